@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::units::*;
 
-/// Two gears in mesh, with outside teeth, each on a shaft of its own.
+/// Two gears in mesh, each on a shaft of its own.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshSection {
@@ -14,7 +14,7 @@ pub struct MeshSection {
     pub normal_module: Length,
     /// \[rad] normal pressure angle; 20 degrees if not given.
     pub pressure_angle: Option<Angle>,
-    /// \[rad] helix angle of the first gear, positive for right-hand teeth (ISO 21771); the other one has the other hand. 0 if not given.
+    /// \[rad] helix angle of the first gear, positive for right-hand teeth (ISO 21771); another outside gear has the other hand, inside teeth the same. 0 if not given.
     pub helix_angle: Option<Angle>,
     /// Both gears.
     pub gears: [MeshGear; 2],
@@ -24,6 +24,45 @@ pub struct MeshSection {
     pub damping_ratio: Option<f64>,
     /// \[m] play along the normal between both flanks; what profile shifts and centre distance leave if not given.
     pub backlash: Option<Length>,
+    /// [-] what of the mean stiffness is added as teeth come and go: waves and curves, whose sum counts; statics and natural frequencies take the mean.
+    #[serde(default)]
+    pub stiffness_variation: Vec<Varies<Ratio>>,
+    /// \[m] transmission error along the normal: how far the second gear is pushed on, where the first one drives as it turns about +x; a list as that of the stiffness.
+    #[serde(default)]
+    pub transmission_error: Vec<Varies<Length>>,
+    /// [-] mean coefficient of friction between the teeth; no friction if not given.
+    pub friction: Option<f64>,
+}
+
+/// Over what a term of a variation closes on itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Over {
+    /// A tooth.
+    #[default]
+    Tooth,
+    /// A turn of the first gear.
+    First,
+    /// A turn of the second gear.
+    Second,
+}
+
+/// A term of a variation: a wave, `amplitude cos(order a - phase)`, or a closed curve through `values`, over the angle a from 0 to a whole turn while a
+/// tooth passes, or a gear turns about +x.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Varies<Q> {
+    /// Over what it closes on itself: `"tooth"`, a turn of the `"first"` gear or of the `"second"`; a tooth if not given.
+    #[serde(default)]
+    pub over: Over,
+    /// [-] waves over that; 1 if not given.
+    pub order: Option<u32>,
+    /// Amplitude of a wave.
+    pub amplitude: Option<Q>,
+    /// \[rad] phase of a wave; 0 if not given.
+    pub phase: Option<Angle>,
+    /// Points of a curve at equal distances, the first at 0; or `{ file = "te.csv", column = "error [um]" }`.
+    pub values: Option<Vec<Q>>,
 }
 
 /// A gear of a mesh.
@@ -38,7 +77,10 @@ pub struct MeshGear {
     pub teeth: u32,
     /// \[m] width of its teeth.
     pub face_width: Length,
-    /// [-] profile shift, of the normal module; 0 if not given.
+    /// Are its teeth inside a ring? Of the second gear alone.
+    #[serde(default)]
+    pub inside: bool,
+    /// [-] profile shift, of the normal module; 0 if not given. ISO 21771's of inside teeth: positive makes a ring's teeth thicker, its tip circle smaller.
     #[serde(default)]
     pub profile_shift: f64,
     /// \[m] diameter over the tips, for the contact ratio of the mean stiffness; the usual one if not given.

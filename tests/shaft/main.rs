@@ -21,5 +21,6 @@ mod several;
 #[allow(dead_code)]
 mod sources;
 mod statics;
+mod teeth;
 mod three_stage;
 mod torsion;

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use nalgebra::{Vector3, Vector6};
 use roulement::model::link::spring_bearing::{AxialSupport, SpringBearing};
-use roulement::model::link::tooth_mesh::ToothMesh;
+use roulement::model::link::tooth_mesh::{ToothFriction, ToothMesh, Varying};
+use roulement::model::link::variation::{Term, Variation};
 use roulement::model::link::{Law, Link};
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
@@ -125,17 +126,27 @@ fn tangents_of_links_are_differences_of_their_forces_and_forces_those_of_a_poten
     let unit = Vector3::new(0.3, -0.8, -0.5).normalize();
     let mesh = ToothMesh {
         normals: [unit, Vector3::new(-0.3, 0.8, -0.5).normalize()],
+        arms: [Vector3::zeros(); 2],
         stiffness: 2e8,
         damping: 900.0,
         backlash: 2e-6,
+        turn: 0.6,
+        varying: None,
+        friction: None,
     };
+    let wave = |times, amplitude| Variation(vec![Term::Wave { times, amplitude, phase: 0.3 }]);
+    let varying = ToothMesh {
+        varying: Some(Varying { stiffness: wave(23.0, 0.2), error: wave(46.0, 3e-6) }),
+        ..mesh.clone()
+    };
+    let rubbing = ToothMesh { friction: Some(ToothFriction { arm: 0.004, slow: 0.5 }), ..varying.clone() };
     let bearing = SpringBearing {
         stiffness: [3e8, 1e8, 1e3],
         damping: [200.0, 100.0, 0.2],
         gap: 5e-6,
         axial: AxialSupport::Along,
     };
-    for law in [Law::Mesh(mesh), Law::Spring(bearing)] {
+    for law in [Law::Mesh(mesh), Law::Mesh(varying), Law::Mesh(rubbing), Law::Spring(bearing)] {
         let link = Link { ends: vec![], law };
         for scale in [-9e-6, -1.04e-6, 3e-6, 1.05e-6, 8e-6] {
             let d = Vector6::new(-0.3, 0.8, 0.5, 0.1, -0.7, 0.4) * scale;
@@ -171,7 +182,7 @@ fn hard_case_a_torque_that_reverses_through_the_backlash_makes_no_energy() {
     let (mut least, mut most, mut free) = (f64::INFINITY, f64::NEG_INFINITY, 0);
     for step in 1..=100 {
         system.advance(5e-5 * f64::from(step)).unwrap();
-        let force = system.outputs().links[0].normal_force;
+        let force = system.outputs().links[0].teeth.normal_force;
         (least, most) = (least.min(force), most.max(force));
         free += usize::from(force == 0.0);
     }
@@ -244,7 +255,11 @@ fn independent_data_statics_of_the_public_three_stage_gearbox() {
         let base_helix = (helix.sin() * 20f64.to_radians().cos()).asin();
         let normal = torque / base / base_helix.cos();
         let link = &system.outputs().links[index];
-        assert!((link.normal_force.abs() / normal - 1.0).abs() < 1e-6, "{} {normal}", link.normal_force);
+        assert!(
+            (link.teeth.normal_force.abs() / normal - 1.0).abs() < 1e-6,
+            "{} {normal}",
+            link.teeth.normal_force
+        );
         let cosine = 0.5 * module * (z1 + z2) / helix.cos() * transverse.cos() / distance;
         let along = (
             torque / base * cosine,

@@ -25,6 +25,7 @@ const SECTIONS: [(&str, &str); 24] = [
     ("HousingPoint", "housing.point"),
     ("MeshSection", "mesh"),
     ("MeshGear", "mesh.gears"),
+    ("Varies", "mesh.stiffness_variation"),
     ("WrittenBearing", "bearing"),
     ("StiffnessSection", "bearing.stiffness"),
     ("Mounting", "bearing.mounting"),

@@ -24,7 +24,10 @@ fn ran() -> (System, f64, Vec<f64>) {
         if time > FADED {
             let outputs = system.outputs();
             torque += outputs.shafts[0].torque;
-            normal.iter_mut().zip(&outputs.links).for_each(|(sum, link)| *sum += link.normal_force.abs());
+            normal
+                .iter_mut()
+                .zip(&outputs.links)
+                .for_each(|(sum, link)| *sum += link.teeth.normal_force.abs());
             count += 1.0;
         }
     }
@@ -43,7 +46,11 @@ fn invariant_the_public_three_stage_gearbox_keeps_its_energy_its_ratio_and_its_b
     let hand = 500.0 * (23.0 / 67.0) * (13.0 / 76.0) * (14.0 / 87.0);
     assert!((torque / hand - 1.0).abs() < 0.01, "{torque} {hand}");
     for (mean, link) in normal.iter().zip(&at_start.outputs().links) {
-        assert!((mean / link.normal_force.abs() - 1.0).abs() < 0.01, "{mean} {}", link.normal_force);
+        assert!(
+            (mean / link.teeth.normal_force.abs() - 1.0).abs() < 0.01,
+            "{mean} {}",
+            link.teeth.normal_force
+        );
     }
 
     // What is put in is lost in dampers and bearings, or stored.

@@ -63,7 +63,7 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
     for (index, name) in scene.link_names().enumerate() {
         let forces = ["force.x", "force.y", "force.z"].map(|quantity| (quantity, "N"));
         let others = match index < scene.meshes.len() {
-            true => vec![("normal_force", "N")],
+            true => vec![("normal_force", "N"), ("misalignment", "rad"), ("friction_power", "W")],
             false => vec![("moment.y", "N m"), ("moment.z", "N m")],
         };
         columns.extend(
@@ -93,7 +93,9 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
         let force = &link.state.force;
         row.extend(force.fixed_rows::<3>(0).iter());
         match index < scene.meshes.len() {
-            true => row.push(link.normal_force),
+            true => {
+                row.extend([link.teeth.normal_force, link.teeth.misalignment, link.teeth.friction_power]);
+            }
             false => row.extend(force.fixed_rows::<2>(4).iter()),
         }
     }

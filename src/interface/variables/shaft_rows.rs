@@ -5,7 +5,7 @@ use crate::effects::frame::FrameSection;
 use crate::scene::system::{NamedLoad, ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::{
-    HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs,
+    HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs, TeethOutputs,
 };
 
 /// Where the value of a variable of the shaft comes from.
@@ -40,8 +40,8 @@ pub enum ShaftSource {
 pub enum LinkQuantity {
     /// \[N, N m] a component of force and moment on the first gear or the shaft.
     Force(usize),
-    /// \[N] normal to the teeth.
-    Normal,
+    /// Of teeth.
+    Teeth(fn(&TeethOutputs) -> f64),
     /// \[J] stored.
     Stored,
     /// \[J] lost since the start.
@@ -52,7 +52,7 @@ impl LinkQuantity {
     fn read(self, link: &LinkOutputs) -> f64 {
         match self {
             Self::Force(component) => link.state.force[component],
-            Self::Normal => link.normal_force,
+            Self::Teeth(get) => get(&link.teeth),
             Self::Stored => link.state.stored,
             Self::Damped => link.state.damped,
         }
@@ -314,7 +314,21 @@ fn link(rows: &mut Vec<Variable>, (index, meshes): (usize, bool), name: &str) {
     }
     if meshes {
         let what = "force normal to the teeth, positive where the first gear drives as it turns about +x,";
-        add("normal_force", newton, what, LinkQuantity::Normal);
+        add("normal_force", newton, what, LinkQuantity::Teeth(|teeth| teeth.normal_force));
+        let what = "misalignment of the teeth in their plane of action, positive where the flank of the first gear leans into the other towards +x,";
+        add("misalignment", (units::RADIAN, 1e-3), what, LinkQuantity::Teeth(|teeth| teeth.misalignment));
+        let tilting: [(&str, &str, fn(&TeethOutputs) -> f64); 4] = [
+            ("first.moment.y", "first gear about its axis, y", |teeth| teeth.tilting_moments[0].y),
+            ("first.moment.z", "first gear about its axis, z", |teeth| teeth.tilting_moments[0].z),
+            ("second.moment.y", "second gear about its axis, y", |teeth| teeth.tilting_moments[1].y),
+            ("second.moment.z", "second gear about its axis, z", |teeth| teeth.tilting_moments[1].z),
+        ];
+        for (key, of, get) in tilting {
+            let what = format!("moment of the axial force on the {of} component, axes of the shaft,");
+            add(key, (units::NEWTON_METRE, 1.0), &what, LinkQuantity::Teeth(get));
+        }
+        let what = "power lost to friction of the teeth";
+        add("friction_power", (units::WATT, 1.0), what, LinkQuantity::Teeth(|teeth| teeth.friction_power));
     } else {
         for (axis, letter) in [(4, "y"), (5, "z")] {
             let what = format!("moment on the shaft, {letter} component, axes of the shaft,");

@@ -16,3 +16,16 @@ pub struct LinkForce {
     /// \[W] power that is lost.
     pub damped: f64,
 }
+
+impl LinkForce {
+    /// No force.
+    pub fn none() -> Self {
+        Self {
+            force: Vector6::zeros(),
+            by_displacement: Matrix6::zeros(),
+            by_rate: Matrix6::zeros(),
+            stored: 0.0,
+            damped: 0.0,
+        }
+    }
+}

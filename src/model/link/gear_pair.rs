@@ -1,11 +1,14 @@
-//! Geometry of a pair of outside gears on parallel axes, and the mean stiffness of its teeth.
+//! Geometry of a pair of gears on parallel axes, and the mean stiffness of its teeth.
+//!
+//! The signs are those of ISO 21771 (2007): a gear with inside teeth has a negative number of teeth, and with it radii below zero; its pair has a
+//! negative centre distance. All formulas hold for both then.
 
 use nalgebra::Vector3;
 
 /// A gear of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gear {
-    /// [-] teeth.
+    /// [-] teeth; negative where they are inside.
     pub teeth: f64,
     /// [-] profile shift, of the normal module.
     pub profile_shift: f64,
@@ -20,11 +23,12 @@ pub struct GearPair {
     pub module: f64,
     /// \[rad] normal pressure angle.
     pub pressure_angle: f64,
-    /// \[rad] helix angle of the first gear, positive for right-hand teeth (ISO 21771: 2007); the other has the other hand.
+    /// \[rad] helix angle of the first gear, positive for right-hand teeth (ISO 21771: 2007); another outside gear has the other hand, one with inside
+    /// teeth the same.
     pub helix_angle: f64,
     /// Both gears.
     pub gears: [Gear; 2],
-    /// \[m] centre distance.
+    /// \[m] centre distance; negative with inside teeth.
     pub centre_distance: f64,
     /// \[m] face width that both have in common.
     pub face_width: f64,
@@ -64,7 +68,7 @@ impl GearPair {
         (self.helix_angle.sin() * self.pressure_angle.cos()).asin()
     }
 
-    /// \[m] pitch radii: they divide the centre distance as the teeth.
+    /// \[m] pitch radii: they divide the centre distance as the teeth; negative of inside teeth.
     pub fn pitch_radii(&self) -> [f64; 2] {
         self.gears.map(|gear| self.centre_distance * gear.teeth / self.sum())
     }
@@ -85,30 +89,50 @@ impl GearPair {
         circumferential * angle.cos() * self.base_helix_angle().cos()
     }
 
-    /// [-] transverse contact ratio (ISO 21771: 2007).
-    pub fn contact_ratio(&self) -> f64 {
+    /// [-] parts of the transverse contact ratio after the pitch point, where the tip of the first gear carries, and before it (ISO 21771: 2007).
+    pub fn tip_ratios(&self) -> [f64; 2] {
         let [x1, x2] = self.gears.map(|gear| gear.profile_shift);
         let shortened = (self.centre_distance - self.reference_centre_distance()) / self.module - x1 - x2;
         let base = self.base_radii();
-        let part = |index: usize| {
+        let angle = self.transverse_pressure_angle();
+        let pitch = std::f64::consts::PI * self.module / self.helix_angle.cos() * angle.cos();
+        [0, 1].map(|index| {
             let gear = self.gears[index];
             let usual = self.module
                 * (gear.teeth / self.helix_angle.cos()
                     + 2.0 * (1.0 + gear.profile_shift + shortened.min(0.0)));
             let tip = 0.5 * gear.tip_diameter.unwrap_or(usual);
-            (tip * tip - base[index] * base[index]).max(0.0).sqrt()
-        };
-        let length = part(0) + part(1) - self.centre_distance * self.working_pressure_angle().sin();
-        let angle = self.transverse_pressure_angle();
-        let pitch = std::f64::consts::PI * self.module / self.helix_angle.cos() * angle.cos();
-        length / pitch
+            let way = (tip * tip - base[index] * base[index]).max(0.0).sqrt() * gear.teeth.signum();
+            (way - base[index] * self.working_pressure_angle().tan()) / pitch
+        })
+    }
+
+    /// [-] transverse contact ratio (ISO 21771: 2007).
+    pub fn contact_ratio(&self) -> f64 {
+        self.tip_ratios().iter().sum()
+    }
+
+    /// [-] tooth loss factor: lost power over coefficient of friction and transmitted power (Ohlendorf 1958, as in Niemann and Winter 2003 and
+    /// ISO/TR 14179-2: 2001; from memory), for contact ratios of 1 to 2.
+    pub fn loss_factor(&self) -> f64 {
+        let [one, other] = self.tip_ratios();
+        let [z1, z2] = self.gears.map(|gear| gear.teeth);
+        let ratio = z2 / z1;
+        let shape = 1.0 - one - other + one * one + other * other;
+        std::f64::consts::PI * (ratio + 1.0) / (z1 * ratio * self.base_helix_angle().cos()) * shape
+    }
+
+    /// [-] turn of the first gear against the line of centres, over the relative rotation of both.
+    pub fn turn(&self) -> f64 {
+        self.gears[1].teeth / self.sum()
     }
 
     /// [N/m] mean stiffness along the normal of steel gears with solid discs and a basic rack of 1.25 modules: ISO 6336-1: 2006, method B
-    /// (its coefficients are quoted from memory, no print was at hand), at 100 N/mm or more; that of the standard is in the transverse plane.
+    /// (its coefficients are quoted from memory, no print was at hand), at 100 N/mm or more; that of the standard is in the transverse plane. Inside teeth
+    /// count as a rack there.
     pub fn mean_stiffness(&self) -> f64 {
         let virtual_teeth = self.gears.map(|gear| gear.teeth / self.helix_angle.cos().powi(3));
-        let [z1, z2] = virtual_teeth;
+        let [z1, z2] = virtual_teeth.map(|teeth| if teeth < 0.0 { f64::INFINITY } else { teeth });
         let [x1, x2] = self.gears.map(|gear| gear.profile_shift);
         // mm um/N
         let compliance = 0.04723 + 0.15551 / z1 + 0.25791 / z2
@@ -126,7 +150,7 @@ impl GearPair {
         mean * 1e9 * self.face_width / self.base_helix_angle().cos().powi(2)
     }
 
-    /// Normals of both flanks on the first gear, whose axis is along x, where the other one lies along `towards` from it (a unit vector
+    /// Normals of both flanks on the first gear, whose axis is along x, where the pitch point lies along `towards` from it (a unit vector
     /// across x): the first where it drives while it turns about +x, the other where it is driven.
     pub fn normals(&self, towards: &Vector3<f64>) -> [Vector3<f64>; 2] {
         let along = Vector3::x().cross(towards);

@@ -12,6 +12,9 @@ pub mod gear_pair;
 pub mod one_sided;
 pub mod spring_bearing;
 pub mod tooth_mesh;
+pub mod variation;
+
+use std::f64::consts::TAU;
 
 use nalgebra::{DVector, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
@@ -20,6 +23,7 @@ use super::structure::{Map, Spin, Structure, StructureState, Turning};
 pub use force::LinkForce;
 use spring_bearing::SpringBearing;
 use tooth_mesh::ToothMesh;
+use variation::Variation;
 
 /// An end of a link on a structure.
 #[derive(Clone, Debug)]
@@ -133,6 +137,27 @@ impl Link {
             Law::Mesh(mesh) => mesh.force(displacement, rate, flank),
             Law::Spring(bearing) => bearing.force(displacement, rate),
         }
+    }
+
+    /// The same without what varies as the link turns: as statics and natural frequencies take it.
+    pub fn mean_force(
+        &self,
+        displacement: &Vector6<f64>,
+        rate: &Vector6<f64>,
+        flank: Option<usize>,
+    ) -> LinkForce {
+        match &self.law {
+            Law::Mesh(mesh) => mesh.mean_force(displacement, rate, flank),
+            Law::Spring(bearing) => bearing.force(displacement, rate),
+        }
+    }
+
+    /// \[s] shortest period of what varies as it turns at such a rate; none where nothing does.
+    pub fn shortest_period(&self, rate: &Vector6<f64>) -> Option<f64> {
+        let Law::Mesh(ToothMesh { turn, varying: Some(varying), .. }) = &self.law else { return None };
+        let waves = [&varying.stiffness, &varying.error].into_iter().filter_map(Variation::most_waves);
+        let speed = (turn * rate[3]).abs();
+        waves.reduce(f64::max).filter(|_| speed > 0.0).map(|waves| TAU / (waves * speed))
     }
 
     /// State of the link while its ends are in these states, `h` \[s] after it did something else.

@@ -1,6 +1,6 @@
 //! A bearing by its stiffness: springs and dampers between a shaft and what its outer ring sits in, without balls or rollers.
 
-use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
+use nalgebra::{Matrix2, Vector2, Vector6};
 
 use super::force::LinkForce;
 use super::one_sided::OneSided;
@@ -32,13 +32,7 @@ pub struct SpringBearing {
 impl SpringBearing {
     /// Force and moment on the shaft.
     pub fn force(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>) -> LinkForce {
-        let mut on = LinkForce {
-            force: Vector6::zeros(),
-            by_displacement: Matrix6::zeros(),
-            by_rate: Matrix6::zeros(),
-            stored: 0.0,
-            damped: 0.0,
-        };
+        let mut on = LinkForce::none();
         self.add_radial(displacement, rate, &mut on);
         let ways: &[f64] = match self.axial {
             AxialSupport::Both => &[0.0],

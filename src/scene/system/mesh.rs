@@ -4,8 +4,12 @@ use nalgebra::Vector3;
 
 use super::SystemScene;
 use crate::model::link::gear_pair::{Gear, GearPair};
+use crate::model::link::tooth_mesh::{ToothFriction, Varying};
+use crate::model::link::variation::{Term, Variation};
+use crate::numerics::periodic_spline::PeriodicSpline;
 use crate::schema::numbers::Range;
-use crate::schema::{MeshSection, SceneError, ShaftSection, StiffnessSection};
+use crate::schema::units::{Quantity, Ratio};
+use crate::schema::{MeshSection, Over, SceneError, ShaftSection, StiffnessSection, Varies};
 
 const MODULE: Range = Range::closed(1e-5, 1.0, "m");
 const PRESSURE_ANGLE: Range = Range::closed(0.1, 0.8, "rad");
@@ -17,6 +21,16 @@ const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
 const NO_LESS: Range = Range::closed(0.0, 1e15, "N/m or N m/rad, and as much damping");
 const RATIO: Range = Range::closed(0.0, 10.0, "");
 const PLAY: Range = Range::closed(0.0, 0.1, "m");
+const FRICTION: Range = Range::closed(0.0, 1.0, "");
+const ORDER: Range = Range::closed(1.0, 1000.0, "");
+const PHASE: Range = Range::closed(-7.0, 7.0, "rad");
+/// What is added to a stiffness of 1.
+const OF_STIFFNESS: Range = Range::closed(-1.0, 10.0, "");
+const ERROR: Range = Range::closed(-1e-2, 1e-2, "m");
+/// Points of a curve.
+const POINTS: Range = Range::closed(4.0, 100_000.0, "");
+/// [m/s] pitch line velocity over which friction of teeth takes its sign: slow beside any gear that runs, and seen by steps.
+const SLOW: f64 = 1e-3;
 const POSITION: Range = Range::closed(-1e3, 1e3, "m");
 /// [-] of the module: how far a centre distance may be from that at which the teeth touch on both flanks.
 const FITS: f64 = 0.5;
@@ -46,9 +60,9 @@ pub struct SceneSpring {
 }
 
 impl SceneMesh {
-    /// From the axis of the first gear towards that of the second, a unit vector across x.
+    /// From the axis of the first gear towards the pitch point, a unit vector across x: towards the other axis, or away from that of a ring.
     pub fn towards(&self, scene: &SystemScene) -> Vector3<f64> {
-        across(&scene.shafts, self.shafts).normalize()
+        across(&scene.shafts, self.shafts).normalize() * self.pair(scene).centre_distance.signum()
     }
 
     /// \[m] the pitch point in the middle of the common face width, in the axes of all shafts.
@@ -66,9 +80,102 @@ impl SceneMesh {
 
     /// [-] turns of the second gear for one of the first.
     pub fn ratio(&self) -> f64 {
-        let [one, other] = self.section.gears.each_ref().map(|gear| f64::from(gear.teeth));
+        let [one, other] = teeth(&self.section);
         -one / other
     }
+
+    /// What varies as it turns; none where nothing does.
+    pub fn varying(&self) -> Option<Varying> {
+        let of = &self.section;
+        let varies = !of.stiffness_variation.is_empty() || !of.transmission_error.is_empty();
+        varies.then(|| Varying {
+            stiffness: variation(&of.stiffness_variation, teeth(of)),
+            error: variation(&of.transmission_error, teeth(of)),
+        })
+    }
+
+    /// Friction of its teeth.
+    pub fn friction(&self, scene: &SystemScene) -> Option<ToothFriction> {
+        let coefficient = self.section.friction.filter(|coefficient| *coefficient > 0.0)?;
+        let pair = self.pair(scene);
+        let transverse = pair.base_radii()[0] * pair.base_helix_angle().cos();
+        Some(ToothFriction {
+            arm: coefficient * pair.loss_factor() * transverse * pair.turn(),
+            slow: SLOW / (pair.pitch_radii()[0] * pair.turn()),
+        })
+    }
+}
+
+/// Numbers of teeth, negative where they are inside.
+fn teeth(section: &MeshSection) -> [f64; 2] {
+    section.gears.each_ref().map(|gear| f64::from(gear.teeth) * if gear.inside { -1.0 } else { 1.0 })
+}
+
+fn variation<Q: Quantity>(terms: &[Varies<Q>], [one, other]: [f64; 2]) -> Variation {
+    let term = |of: &Varies<Q>| {
+        let times = match of.over {
+            Over::Tooth => one,
+            Over::First => 1.0,
+            Over::Second => -one / other,
+        };
+        match &of.values {
+            Some(values) => {
+                let points: Vec<[f64; 1]> = values.iter().map(|value| [value.si()]).collect();
+                let curve = PeriodicSpline::through(&points)?;
+                Some(Term::Table { times, curve, points: points.len() })
+            }
+            None => Some(Term::Wave {
+                times: times * f64::from(of.order.unwrap_or(1)),
+                amplitude: of.amplitude.map_or(0.0, Quantity::si),
+                phase: of.phase.map_or(0.0, |phase| phase.0),
+            }),
+        }
+    };
+    Variation(terms.iter().filter_map(term).collect())
+}
+
+fn check_terms<Q: Quantity>(key: &str, terms: &[Varies<Q>], range: &Range) -> Result<(), SceneError> {
+    for (index, of) in terms.iter().enumerate() {
+        let name = |name: &str| format!("{key}[{index}].{name}");
+        let of_wave = of.order.is_some() || of.amplitude.is_some() || of.phase.is_some();
+        match (&of.values, of.amplitude) {
+            (Some(_), _) if of_wave => {
+                let why = "values make a curve, amplitude with order and phase a wave: one entry for each";
+                return Err(SceneError::conflict(name("values"), why));
+            }
+            (None, None) => {
+                let why =
+                    "it needs amplitude (with order and phase), or values of a curve at equal distances";
+                return Err(SceneError::conflict(format!("{key}[{index}]"), why));
+            }
+            (Some(values), _) => {
+                POINTS.check(&format!("{}: number of points", name("values")), values.len() as f64)?;
+                values.iter().try_for_each(|value| range.check(&name("values"), value.si()))?;
+            }
+            (None, Some(amplitude)) => {
+                range.check(&name("amplitude"), amplitude.si())?;
+                ORDER.check(&name("order"), f64::from(of.order.unwrap_or(1)))?;
+                PHASE.check(&name("phase"), of.phase.map_or(0.0, |phase| phase.0))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks what varies: teeth that carry less than nothing are none.
+fn check_varying(section: &MeshSection) -> Result<(), SceneError> {
+    let terms: &[Varies<Ratio>] = &section.stiffness_variation;
+    check_terms("mesh.stiffness_variation", terms, &OF_STIFFNESS)?;
+    check_terms("mesh.transmission_error", &section.transmission_error, &ERROR)?;
+    let [least, _] = variation(terms, teeth(section)).range();
+    if least < -1.0 {
+        let why = format!(
+            "the stiffness comes down to {:.4} of its mean: allowed is 0 and more (a curve swings beyond its points where they jump)",
+            1.0 + least
+        );
+        return Err(SceneError::conflict("mesh.stiffness_variation", why));
+    }
+    Ok(())
 }
 
 fn across(shafts: &[ShaftSection], [one, other]: [usize; 2]) -> Vector3<f64> {
@@ -88,16 +195,17 @@ fn common_face(section: &MeshSection, shafts: &[ShaftSection], of: [usize; 2]) -
 
 fn pair(section: &MeshSection, shafts: &[ShaftSection], of: [usize; 2]) -> GearPair {
     let [from, to] = common_face(section, shafts, of);
+    let signed = teeth(section);
     GearPair {
         module: section.normal_module.0,
         pressure_angle: section.pressure_angle.map_or(20f64.to_radians(), |angle| angle.0),
         helix_angle: section.helix_angle.map_or(0.0, |angle| angle.0),
-        gears: section.gears.each_ref().map(|gear| Gear {
-            teeth: f64::from(gear.teeth),
-            profile_shift: gear.profile_shift,
-            tip_diameter: gear.tip_diameter.map(|diameter| diameter.0),
+        gears: [0, 1].map(|k| Gear {
+            teeth: signed[k],
+            profile_shift: section.gears[k].profile_shift,
+            tip_diameter: section.gears[k].tip_diameter.map(|diameter| diameter.0),
         }),
-        centre_distance: across(shafts, of).norm(),
+        centre_distance: across(shafts, of).norm() * (signed[0] + signed[1]).signum(),
         face_width: to - from,
     }
 }
@@ -119,6 +227,7 @@ fn check(section: MeshSection, shafts: &[ShaftSection]) -> Result<SceneMesh, Sce
     section.stiffness.iter().try_for_each(|k| STIFFNESS.check("mesh.stiffness", k.0))?;
     section.damping_ratio.iter().try_for_each(|ratio| RATIO.check("mesh.damping_ratio", *ratio))?;
     section.backlash.iter().try_for_each(|play| PLAY.check("mesh.backlash", play.0))?;
+    section.friction.iter().try_for_each(|friction| FRICTION.check("mesh.friction", *friction))?;
     let mut of = [0; 2];
     for (place, gear) in of.iter_mut().zip(&section.gears) {
         POSITION.check("mesh.gears.position", gear.position.0)?;
@@ -137,12 +246,21 @@ fn check(section: MeshSection, shafts: &[ShaftSection]) -> Result<SceneMesh, Sce
             "both gears are on one shaft: each needs its own",
         ));
     }
+    let [one, other] = teeth(&section);
+    if one < 0.0 || one + other == 0.0 || (other < 0.0 && one + other > 0.0) {
+        let why = format!(
+            "inside teeth are those of the second gear, and there are more of them than the first one has: {} and {}",
+            section.gears[0].teeth, section.gears[1].teeth
+        );
+        return Err(SceneError::conflict("mesh.gears.inside", why));
+    }
+    check_varying(&section)?;
     let pair = pair(&section, shafts, of);
     if pair.face_width.is_nan() || pair.face_width <= 0.0 {
         let why = "the teeth of both gears do not meet: their face widths have nothing in common";
         return Err(SceneError::conflict("mesh.gears.position", why));
     }
-    let (distance, play) = (pair.centre_distance, pair.backlash());
+    let (distance, play) = (pair.centre_distance.abs(), pair.backlash());
     if play.is_nan() || play.abs() > FITS * pair.module {
         let why = format!(
             "the axes are {distance} m apart, which leaves a play of {play:.3e} m between teeth of these profile shifts: allowed is up to \

@@ -154,7 +154,12 @@ impl MachineEquilibrium {
             "bearings": self.bearings.iter().enumerate().map(bearing).collect::<Map<_, _>>(),
             "meshes": self.links.0.iter().zip(&outputs.links).take(self.links.1).map(|(name, link)| {
                 let force = link.state.force.fixed_rows::<3>(0).into_owned();
-                (name.clone(), json!({ "force_on_first_gear": vector(&force), "normal_force": link.normal_force }))
+                let [first, second] = link.teeth.tilting_moments.each_ref().map(vector);
+                (name.clone(), json!({
+                    "force_on_first_gear": vector(&force), "normal_force": link.teeth.normal_force,
+                    "misalignment": link.teeth.misalignment, "axial_moment_on_first_gear": first,
+                    "axial_moment_on_second_gear": second, "friction_power": link.teeth.friction_power,
+                }))
             }).collect::<Map<_, _>>(),
             "bearings_by_stiffness": self.links.0.iter().zip(&outputs.links).skip(self.links.1).map(|(name, link)| {
                 let [force, moment] = [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
@@ -266,11 +271,27 @@ impl MachineEquilibrium {
         for (index, (name, link)) in names.iter().zip(&self.outputs.links).enumerate() {
             let on = &link.state.force;
             match index < *meshes {
-                true => writeln!(
-                    f,
-                    "\n{name:<16} force on the first gear x {:.4} y {:.4} z {:.4} N, normal to the teeth {:.4} N",
-                    on[0], on[1], on[2], link.normal_force
-                )?,
+                true => {
+                    let teeth = &link.teeth;
+                    writeln!(
+                        f,
+                        "\n{name:<16} force on the first gear x {:.4} y {:.4} z {:.4} N, normal to the teeth {:.4} N",
+                        on[0], on[1], on[2], teeth.normal_force
+                    )?;
+                    let moments = teeth
+                        .tilting_moments
+                        .map(|moment| format!("y {:.5} z {:.5} N m", moment.y, moment.z));
+                    writeln!(
+                        f,
+                        "{:<16} moment of the axial force on the first gear {}, on the second {}",
+                        "", moments[0], moments[1]
+                    )?;
+                    write!(f, "{:<16} teeth misaligned by {:.2} urad", "", teeth.misalignment * 1e6)?;
+                    match teeth.friction_power {
+                        0.0 => writeln!(f)?,
+                        power => writeln!(f, ", their friction takes {power:.3} W")?,
+                    }
+                }
                 false => writeln!(
                     f,
                     "\n{name:<16} force on the shaft x {:.2} y {:.2} z {:.2} N, moment y {:.5} z {:.5} N m (by its stiffness)",

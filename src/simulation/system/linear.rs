@@ -118,7 +118,7 @@ impl System {
         let mut damping = statics.spread(&dampers);
         for (link, state) in self.structures.links.iter().zip(&self.structures.link_states) {
             let map = of_link(link, &statics.first());
-            damping -= map.tr_mul(&(link.force(&state.displacement, &state.rate, None).by_rate * &map));
+            damping -= map.tr_mul(&(link.mean_force(&state.displacement, &state.rate, None).by_rate * &map));
         }
         let mut mass = DMatrix::zeros(damping.nrows(), damping.nrows());
         for ((Carrier { structure, .. }, state), from) in

@@ -45,7 +45,8 @@ pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
         let pair = mesh.pair(scene);
         let towards = mesh.towards(scene);
         let [one, other] = pair.pitch_radii();
-        let ends = vec![end(mesh.shafts[0], &(towards * one)), end(mesh.shafts[1], &(towards * -other))];
+        let arms = [towards * one, towards * -other];
+        let ends = vec![end(mesh.shafts[0], &arms[0]), end(mesh.shafts[1], &arms[1])];
         let stiffness = mesh.section.stiffness.map_or_else(|| pair.mean_stiffness(), |given| given.0);
         let inertia = mesh.shafts.map(|shaft| carriers[shaft].structure.polar_inertia);
         let along = pair.base_helix_angle().cos();
@@ -54,9 +55,13 @@ pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
         let ratio = mesh.section.damping_ratio.unwrap_or(DAMPING_RATIO);
         let law = ToothMesh {
             normals: pair.normals(&towards),
+            arms,
             stiffness,
             damping: 2.0 * ratio * (stiffness / mobility).sqrt(),
             backlash: mesh.section.backlash.map_or_else(|| pair.backlash().max(0.0), |given| given.0),
+            turn: pair.turn(),
+            varying: mesh.varying(),
+            friction: mesh.friction(scene),
         };
         links.push(Link { ends, law: Law::Mesh(law) });
     }

@@ -34,7 +34,7 @@ pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
 pub use linear::{Linear, ShaftMode, Whirl};
 pub use loads::script_changes_within;
-pub use outputs::{HousingOutputs, LinkOutputs, PointOutput, ShaftOutputs, SystemOutputs};
+pub use outputs::{HousingOutputs, LinkOutputs, PointOutput, ShaftOutputs, SystemOutputs, TeethOutputs};
 pub use snapshot::SystemSnapshot;
 pub use structures::Structures;
 

@@ -51,21 +51,39 @@ pub struct ShaftOutputs {
 pub struct LinkOutputs {
     /// Forces and energies; forces are those on the first gear, or on the shaft.
     pub state: LinkState,
-    /// \[N] normal force of teeth: positive on the flank that presses where the first gear drives while it turns about +x, negative on the other.
+    /// Of teeth alone.
+    pub teeth: TeethOutputs,
+}
+
+/// Outputs of teeth in mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TeethOutputs {
+    /// \[N] normal force: positive on the flank that presses where the first gear drives while it turns about +x, negative on the other.
     pub normal_force: f64,
+    /// \[rad] misalignment in the plane of action of the flank that presses.
+    pub misalignment: f64,
+    /// [N m] moments of the axial force on both gears, each about its axis.
+    pub tilting_moments: [Vector3<f64>; 2],
+    /// \[W] power that friction takes.
+    pub friction_power: f64,
 }
 
 impl LinkOutputs {
     /// Outputs of a link in a state.
     pub fn of(link: &Link, state: &LinkState) -> Self {
-        let normal_force = match &link.law {
+        let teeth = match &link.law {
             Law::Mesh(mesh) => {
                 let [one, other] = mesh.flank_forces(&state.displacement, &state.rate);
-                one - other
+                TeethOutputs {
+                    normal_force: one - other,
+                    misalignment: mesh.misalignment(&state.displacement),
+                    tilting_moments: mesh.tilting_moments(&state.force),
+                    friction_power: mesh.friction_power(&state.displacement, &state.rate),
+                }
             }
-            Law::Spring(_) => 0.0,
+            Law::Spring(_) => TeethOutputs::default(),
         };
-        Self { state: *state, normal_force }
+        Self { state: *state, teeth }
     }
 }
 

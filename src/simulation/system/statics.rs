@@ -107,7 +107,7 @@ impl Statics<'_> {
             by
         };
         let meshes = self.links.iter().enumerate().filter_map(|(index, link)| match &link.law {
-            Law::Mesh(mesh) => Some((index, *mesh, by_turns(mesh, link))),
+            Law::Mesh(mesh) => Some((index, mesh, by_turns(mesh, link))),
             Law::Spring(_) => None,
         });
         let meshes: Vec<_> = meshes.collect();
@@ -332,10 +332,12 @@ impl Statics<'_> {
             stiffness += relative.tr_mul(&(whole * &relative));
         }
         for (link, flank) in self.links.iter().zip(&self.flanks) {
-            let [displacement, _] = link.motion(|structure| &states[structure]);
-            // At rest: dampers of teeth that turn in step do nothing.
+            let [displacement, rate] = link.motion(|structure| &states[structure]);
+            // Dampers of teeth that turn in step do nothing; their friction knows which way they turn.
+            let mut turning = Vector6::zeros();
+            turning[3] = rate[3];
             let LinkForce { force: on, by_displacement, .. } =
-                link.force(&displacement, &Vector6::zeros(), *flank);
+                link.mean_force(&displacement, &turning, *flank);
             force = force.max(on.fixed_rows::<3>(0).amax());
             let relative = of_link(link, &first);
             residual += relative.tr_mul(&on);

@@ -44,9 +44,14 @@ impl Structures {
         Given { scene: &self.scene, paths: &self.paths, played }
     }
 
-    /// \[s] shortest period in which a load swings after a time \[s].
+    /// \[s] shortest period in which a load or a mesh swings after a time \[s].
     pub fn shortest_period(&self, played: &Played, time: f64) -> Option<f64> {
+        let links = self.links.iter().zip(&self.link_states);
+        let links = links.filter_map(|(link, state)| link.shortest_period(&state.rate));
         loads::shortest_period(&self.given(played), &self.states, time)
+            .into_iter()
+            .chain(links)
+            .reduce(f64::min)
     }
 
     /// \[s] times between two others at which a table of a load or of the drive bends.
