@@ -2,6 +2,7 @@
 
 use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::keys::keys;
+use super::limits::{Limit, Quantity};
 use super::per_ball::ball_row;
 use super::reports::{BallOutput, NeighboursOutput};
 use crate::schema::SceneError;
@@ -11,6 +12,23 @@ keys! {
     /// Are contacts of neighbouring balls reported (`neighbours.*`)? Balls without a cage touch all the same.
     "full_complement" => on: bool = false,
 }
+
+/// Limit of the loads between balls.
+pub static LIMIT: Limit = Limit {
+    title: "between balls",
+    quantities: &[Quantity {
+        name: BETWEEN_BALLS,
+        column: "between_balls",
+        unit: NEWTON,
+        get: |reports| reports.neighbours.map_or(0.0, |neighbours| neighbours.largest_load),
+        warning: None,
+    }],
+    shown: (1.0, 3),
+    line: |largest| format!("up to {} N: they touch, as no cage keeps them apart", largest.concat()),
+    subject: None,
+};
+/// Name of its quantity.
+pub const BETWEEN_BALLS: &str = "between balls";
 
 type FromNeighbours = fn(&NeighboursOutput) -> f64;
 type FromBall = fn(&BallOutput) -> f64;

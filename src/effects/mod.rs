@@ -15,7 +15,8 @@
 //! 4. `agree` refuses keys that do not go together. What it has to know of the rest of the scene is in [`Setup`].
 //! 5. `inputs` are what a master sets while it is on; their values join [`EffectInputs`]. `rows` and `ball_rows` are its outputs, empty while it is off; what they
 //!    read joins [`Reports`]. A part of the
-//!    losses is its `LOSS`, a power of contacts its `POWER`: named once in [`LOSSES`] and [`CONTACT_POWERS`] below, from which tables, summaries and pages have them.
+//!    losses is its `LOSS`, a power of contacts its `POWER`, a largest value that a run is told of its `LIMIT`: named once in [`LOSSES`],
+//!    [`CONTACT_POWERS`] and [`LIMITS`] below, from which tables, summaries, warnings and pages have them.
 //! 6. Add `pub mod NAME;` and the word `NAME` to the list below. Validation, variables, parameters and the page of a
 //!    package come from that list. Value references follow its order: add at the end.
 //! 7. The physics hangs on at most one hook: `Model` takes from `scene.effects.NAME` what a step reads, as an `Option`.
@@ -56,10 +57,11 @@ use crate::schema::SceneError;
 use crate::schema::numbers::Parameter;
 use estimate::{Estimate, Verdict};
 use keys::Keys;
+use limits::Limit;
 use losses::{ContactPower, Part};
 pub use machinery::effect::{AnyEffect, Effect, EffectInputs, Getter, Info, InputRow, Row, Setup};
 pub use machinery::reports::Reports;
-pub use machinery::{effect, estimate, inherent, keys, losses, moving_frame, reports, since, twin};
+pub use machinery::{effect, estimate, inherent, keys, limits, losses, moving_frame, reports, since, twin};
 use twin::Twin;
 
 /// Makes [`Effects`] of a list of modules.
@@ -114,6 +116,8 @@ pub const LOSSES: [Part; 8] = [
 ];
 /// Powers of contacts with the races that effects report.
 pub const CONTACT_POWERS: [ContactPower; 3] = [groove_slip::POWER, film::POWER, hysteresis::POWER];
+/// Limits that are told of.
+pub static LIMITS: [&Limit; 2] = [&shoulder::LIMIT, &full_complement::LIMIT];
 /// The one of the moment against rolling.
 pub const RESISTING: ContactPower = hysteresis::POWER;
 

@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::effect::{Effect, Getter, Info, Row};
 use super::estimate::{Estimate, Standing, Verdict, digits, percent};
 use super::keys::keys;
+use super::limits::{Limit, Quantity};
 use super::per_ball::ball_row;
-use super::reports::{BallOutput, ContactOutput};
+use super::reports::{BallOutput, ContactOutput, Reports};
 use crate::contact::shoulder::{largest_share, least_margin};
 use crate::schema::variable_units::{ONE, RADIAN};
 
@@ -37,6 +38,43 @@ keys! {
 const KEY: &str = "effects.shoulder_outputs";
 /// Subject of its estimate.
 pub const SUBJECT: &str = "shoulders";
+
+/// Its limit.
+pub static LIMIT: Limit = Limit {
+    title: "over shoulders",
+    quantities: &[
+        Quantity {
+            name: "over inner shoulders",
+            column: "over_inner_shoulders",
+            unit: ONE,
+            get: |reports| share(reports, RACES[0].1),
+            warning: Some(|share| beyond(share, RACES[0].0)),
+        },
+        Quantity {
+            name: "over outer shoulders",
+            column: "over_outer_shoulders",
+            unit: ONE,
+            get: |reports| share(reports, RACES[1].1),
+            warning: Some(|share| beyond(share, RACES[1].0)),
+        },
+    ],
+    shown: (100.0, 2),
+    line: |shares| match shares {
+        [inner, outer] => format!("inner up to {inner} %, outer up to {outer} % of a load"),
+        _ => String::new(),
+    },
+    subject: Some(SUBJECT),
+};
+
+/// [-] largest share of a ball's load beyond the shoulders of a race.
+fn share(reports: &Reports<'_>, contact: Contact) -> f64 {
+    let contacts = reports.balls.iter().map(contact);
+    largest_share(contacts.map(|contact| (contact.load, contact.shoulder_share)))
+}
+
+fn beyond(share: f64, race: &str) -> String {
+    format!("up to {:.2} % of a load is beyond the {race} shoulders", 100.0 * share)
+}
 
 type Contact = fn(&BallOutput) -> &ContactOutput;
 
@@ -94,10 +132,7 @@ impl Effect for Settings {
             unit: ONE,
             nominal: 0.1,
             description: format!("largest share of a ball's load beyond the shoulders of the {race} race"),
-            get: Getter::new(move |reports| {
-                let contacts = reports.balls.iter().map(contact);
-                largest_share(contacts.map(|contact| (contact.load, contact.shoulder_share)))
-            }),
+            get: Getter::new(move |reports| share(reports, contact)),
         };
         let margin = |(race, contact): (&str, Contact)| Row {
             name: format!("shoulder.{race}.margin"),

@@ -7,13 +7,13 @@ use std::path::PathBuf;
 use clap::Args;
 use roulement::analysis::estimate::{self, Verdicts};
 use roulement::effects::estimate::{Standing, Verdict, digits, missed, percent, signed_percent};
-use roulement::effects::shoulder::SUBJECT as SHOULDERS;
 use roulement::model::Model;
 use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement_cli::measure::{self, measure};
 use roulement_cli::report::json;
+use roulement_cli::report::limits::Limits;
 use roulement_cli::sweep::all::threads;
 use serde_json::{Map, Value};
 
@@ -106,12 +106,11 @@ pub fn announce(name: &str, scene: &Scene, verdicts: &Verdicts) {
     tell(all.map(|line| format!("{before}{line}")));
 }
 
-/// Effects that were on in a run and did not matter, a line each; `cut` tells whether a shoulder cut a contact in it.
-pub fn idle_in(verdicts: &Verdicts, cut: bool) -> Vec<String> {
-    let idle = verdicts
-        .iter()
-        .flatten()
-        .filter(|verdict| verdict.is_idle() && !(cut && verdict.subject == SHOULDERS));
+/// Effects that were on in a run and did not matter, a line each; but for those whose limit it met.
+pub fn idle_in(verdicts: &Verdicts, limits: &Limits) -> Vec<String> {
+    let met: Vec<_> = limits.met().filter_map(|limit| limit.subject).collect();
+    let idle =
+        verdicts.iter().flatten().filter(|verdict| verdict.is_idle() && !met.contains(&verdict.subject));
     idle.map(|verdict| format!("{}: {}", verdict.subject, verdict.sentence)).collect()
 }
 

@@ -236,18 +236,13 @@ fn write_settled_of_all<'a>(
     }
 }
 
-/// Loads on shoulders and between balls; nothing where a run had none.
+/// Limits that a run met.
 fn write_limits(out: &mut String, limits: &Limits, shown: &Shown) -> std::fmt::Result {
-    if limits.over_shoulders != [0.0; 2] {
-        let [inner, outer] =
-            ["over inner shoulders", "over outer shoulders"].map(|name| shown.text(name, 100.0, 2));
-        writeln!(out, "over shoulders   inner up to {inner} %, outer up to {outer} % of a load")?;
-    }
-    if limits.between_balls > 0.0 {
-        let largest = shown.text("between balls", 1.0, 3);
-        writeln!(out, "between balls    up to {largest} N: they touch, as no cage keeps them apart")?;
-    }
-    Ok(())
+    limits.met().try_for_each(|limit| {
+        let (factor, digits) = limit.shown;
+        let texts = limit.quantities.iter().map(|quantity| shown.text(quantity.name, factor, digits));
+        writeln!(out, "{:<16} {}", limit.title, (limit.line)(&texts.collect::<Vec<_>>()))
+    })
 }
 
 fn write_bearing(
@@ -344,7 +339,7 @@ fn write_bearing(
     for line in &simulation.scene().effects.auto.found {
         writeln!(out, "found out        {}", line.trim_start_matches("auto: "))?;
     }
-    for line in idle_in(verdicts, limits.over_shoulders != [0.0; 2]) {
+    for line in idle_in(verdicts, limits) {
         writeln!(out, "did not matter   {line}")?;
     }
     let s = &now.statistics;

@@ -47,9 +47,6 @@ impl Figures {
             ("largest inner angle", inner_angle.1),
             ("least outer angle", outer_angle.0),
             ("largest outer angle", outer_angle.1),
-            ("over inner shoulders", limits.over_shoulders[0]),
-            ("over outer shoulders", limits.over_shoulders[1]),
-            ("between balls", limits.between_balls),
             ("end eccentricity", eccentricity(now)),
             ("work", now.work),
             ("lost", now.dissipated),
@@ -58,6 +55,7 @@ impl Figures {
         ]
         .into_iter()
         .collect();
+        limits.all().for_each(|(quantity, largest)| figures.set(quantity.name, largest));
         if let Some(means) = means {
             figures.add_means(means);
             let names = ["largest eccentricity", "largest pocket load", "largest land load"];

@@ -31,7 +31,7 @@ pub struct Wanted {
     pub columns: Vec<String>,
     /// Ending of the files of whole tables, `csv` or `parquet`; none where they are not wanted.
     pub tables: Option<String>,
-    /// What grows or decays where a case starts, and whether races circle.
+    /// Growth or decay where a case starts, and whether races circle.
     pub growth: bool,
 }
 
@@ -332,9 +332,9 @@ fn summary(
         row.push(number(&format!("{name}.largest"), unit, extremes.largest));
     }
     row.push(number("peak_pressure.largest", "Pa", seen.limits.peak_pressure));
-    row.push(number("over_inner_shoulders.largest", "1", seen.limits.over_shoulders[0]));
-    row.push(number("over_outer_shoulders.largest", "1", seen.limits.over_shoulders[1]));
-    row.push(number("between_balls.largest", "N", seen.limits.between_balls));
+    for (quantity, largest) in seen.limits.all() {
+        row.push(number(&format!("{}.largest", quantity.column), quantity.unit.name, largest));
+    }
     row.push(number("energy_balance", "J", seen.energy.balance(simulation.outputs())));
     if let Some(closed) = &seen.part.closed {
         row.push(number("torque_power.mean", "W", closed.torque));

@@ -6,7 +6,6 @@ use roulement::effects::Row;
 use roulement::effects::rating::Sums;
 use roulement::effects::reports::LifeOutput;
 use roulement::model::Model;
-use roulement::model::bodies::Race;
 use roulement::scene::PhaseSection;
 use roulement::simulation::Simulation;
 use roulement::simulation::alarms::{Alarm, BearingAlarms};
@@ -59,7 +58,7 @@ pub struct BearingSeen {
 }
 
 impl BearingWatch {
-    /// Of a simulation that has not been played yet, and phases of its run.
+    /// Gatherer of a simulation that has not been played yet, and phases of its run.
     pub fn of(simulation: &Simulation, phases: &[PhaseSection]) -> Self {
         let peaks = PEAKS.iter().filter(|peak| peak.is_of(simulation));
         let peaks: Vec<_> = peaks.map(|peak| (peak.name.into(), peak.unit)).collect();
@@ -161,19 +160,12 @@ impl BearingSeen {
 
     /// Warnings for whoever reads results of this run, a sentence each: its summary and its notes say the same.
     pub fn warnings(&self, simulation: &Simulation) -> Vec<String> {
-        let of_race = |race: Race| {
-            let share = self.limits.over_shoulders[race as usize];
-            (share > 0.0).then(|| {
-                format!("up to {:.2} % of a load is beyond the {} shoulders", 100.0 * share, race.name())
-            })
-        };
-        let shoulders = Race::BOTH.into_iter().filter_map(of_race);
         let growing = self.part.growing.iter().cloned();
         let alarms = self.alarms.iter().map(|alarm| alarm.text(""));
         growing
             .chain(alarms)
             .chain(self.remarks(simulation))
-            .chain(shoulders)
+            .chain(self.limits.warnings())
             .chain(self.energy.warning(simulation))
             .collect()
     }

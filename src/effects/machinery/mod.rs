@@ -4,6 +4,7 @@ pub mod effect;
 pub mod estimate;
 pub mod inherent;
 pub mod keys;
+pub mod limits;
 pub mod losses;
 pub mod moving_frame;
 pub mod reports;
