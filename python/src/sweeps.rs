@@ -32,7 +32,7 @@ pub struct Sweep {
 impl Sweep {
     /// `cases` is the path of a table, or the text of one in TOML.
     #[new]
-    #[pyo3(signature = (directory, path=None, text=None, scene=None, columns=vec![]))]
+    #[pyo3(signature = (directory, path=None, text=None, scene=None, columns=vec![], growth=false))]
     fn new(
         py: Python<'_>,
         directory: PathBuf,
@@ -40,6 +40,7 @@ impl Sweep {
         text: Option<String>,
         scene: Option<String>,
         columns: Vec<String>,
+        growth: bool,
     ) -> PyResult<Self> {
         py.detach(|| {
             let cases = match (&path, &text) {
@@ -55,7 +56,7 @@ impl Sweep {
                 (None, Some(path)) => base_of(path).map_err(refused)?.0,
                 (None, None) => return Err(value("name the base scene")),
             };
-            let wanted = Wanted { columns, ..Wanted::default() };
+            let wanted = Wanted { columns, growth, ..Wanted::default() };
             let sweep = all::Sweep::new(cases, base, wanted, &directory).map_err(failed)?;
             Ok(Self { sweep, directory })
         })
@@ -156,9 +157,9 @@ pub fn base_scene(py: Python<'_>, path: PathBuf) -> PyResult<String> {
 
 /// Row of a case from the text of its scene, as text: what a worker on another machine does.
 #[pyfunction]
-pub fn case_row(py: Python<'_>, scene: &str, columns: Vec<String>) -> PyResult<String> {
+pub fn case_row(py: Python<'_>, scene: &str, columns: Vec<String>, growth: bool) -> PyResult<String> {
     py.detach(|| {
-        let wanted = Wanted { columns, ..Wanted::default() };
+        let wanted = Wanted { columns, growth, ..Wanted::default() };
         let row = case::run_text(scene, &wanted, None, &AtomicBool::new(false)).map_err(failed)?;
         to_text(&row.unwrap_or_default()).map_err(value)
     })

@@ -52,6 +52,18 @@ def test_lists_and_dictionaries_are_cases(tmp_path, thrust):
         sweep.run([{"friction.bal_race": 0.1}], short, tmp_path / "wrong")
 
 
+def test_consistency_growth_is_that_of_the_command_line(tmp_path):
+    path, scene = tmp_path / "cases.csv", ROOT / "scenes" / "thrust.toml"
+    path.write_text(cases(2, "0.2 ms"))
+    program("sweep", path, "--scene", scene, "-o", tmp_path / "program", "--growth")
+    table = sweep.run(path, scene, tmp_path / "python", workers=2, growth=True)
+    assert (tmp_path / "program" / "summary.csv").read_bytes() == (tmp_path / "python" / "summary.csv").read_bytes()
+    assert set(table["grows"]) <= {"yes", "no"} and table.units["growth"] == "1/s"
+    assert np.isfinite(table["growth"]).all() and (table["growth.frequency"] >= 0).all() and all(table["growth.motion"])
+    # Cases of the same directory without it are others, and have no such columns.
+    assert "grows" not in sweep.run(path, scene, tmp_path / "python").names
+
+
 def test_consistency_the_same_cases_in_fmpy_have_the_same_numbers_but_for_the_error_of_steps(tmp_path, thrust):
     interval, rows = 1e-4, 20
     base = thrust.with_({"load.output_interval": interval, "load.duration": interval * rows, "effects.per_ball_outputs": True})

@@ -67,13 +67,13 @@ def _array(cells):
         return np.array(cells)
 
 
-def _open(cases, scene, output, columns):
+def _open(cases, scene, output, wanted):
     """The cases and their directory."""
     if isinstance(scene, (str, os.PathLike)):
         text = _native.base_scene(Path(scene))
     else:
         text = scene.source if scene else None
-    options = {"scene": text, "columns": [columns] if isinstance(columns, str) else list(columns)}
+    options = {"scene": text, **wanted}
     if isinstance(cases, (str, os.PathLike)):
         return _native.Sweep(Path(output), path=Path(cases), **options)
     if isinstance(cases, dict):
@@ -106,35 +106,40 @@ class _Progress:
         print(f"\r{done} of {count} cases, {elapsed:.0f} s elapsed, {left}   ", end=end, file=sys.stderr, flush=True)
 
 
-def run(cases, scene=None, output="sweep", columns=(), workers=None, scheduler=None, batch=None, progress=False):
+def run(
+    cases, scene=None, output="sweep", columns=(), workers=None, scheduler=None, batch=None, progress=False, growth=False
+):
     """Runs all cases that are not done yet and returns the summary, a `Table`.
 
     `cases` is the path of a table (CSV or TOML), a list of dictionaries with keys of the scene, or a dictionary of lists: all
     combinations. `scene` is the base scene, `output` the directory. `columns` are variables whose mean, least, largest and last
     value are wanted, too. `workers` are threads. With `scheduler`, the address of one of Dask or a `distributed.Client`, cases
-    run there in batches.
+    run there in batches. With `growth` the summary also has what grows or decays where each case starts, as that of
+    `roulement sweep --growth`: `grows` ("yes", "no", "cannot tell"), `growth` [1/s], `growth.frequency` [Hz], `growth.motion`, and
+    `circles` of every bearing.
 
     Raises ValueError for a key that no case can be read with; a case that fails is a row with its reason.
     """
-    sweep = _open(cases, scene, output, columns)
+    wanted = {"columns": [columns] if isinstance(columns, str) else list(columns), "growth": growth}
+    sweep = _open(cases, scene, output, wanted)
     told = _Progress(progress)
     try:
         if scheduler is None:
             sweep.run(sweep.missing(), workers, told)
         else:
-            _run_on(scheduler, sweep, [columns] if isinstance(columns, str) else list(columns), batch, told)
+            _run_on(scheduler, sweep, wanted, batch, told)
     finally:
         # Also of a sweep that was interrupted.
         sweep.write_summary()
     return Table(Path(output) / "summary.csv")
 
 
-def _batch(cases, columns):
-    """What a worker does: rows of cases from the texts of their scenes."""
-    return [(case, _native.case_row(text, columns)) for case, text in cases]
+def _batch(cases, wanted):
+    """Work of a worker: rows of cases from the texts of their scenes."""
+    return [(case, _native.case_row(text, **wanted)) for case, text in cases]
 
 
-def _run_on(scheduler, sweep, columns, batch, told):
+def _run_on(scheduler, sweep, wanted, batch, told):
     """Runs what is missing on a scheduler; goes on where it was when that comes back."""
     from distributed import Client
 
@@ -143,10 +148,10 @@ def _run_on(scheduler, sweep, columns, batch, told):
     while missing := sweep.missing():
         try:
             if isinstance(scheduler, Client):
-                return _on_client(scheduler, sweep, missing, columns, batch, lambda done: told(done, len(first)))
+                return _on_client(scheduler, sweep, missing, wanted, batch, lambda done: told(done, len(first)))
             with Client(scheduler, timeout=10, set_as_default=False) as client:
                 before = len(first) - len(missing)
-                _on_client(client, sweep, missing, columns, batch, lambda done: told(before + done, len(first)))
+                _on_client(client, sweep, missing, wanted, batch, lambda done: told(before + done, len(first)))
         except (OSError, _Lost) as why:
             if len(sweep.missing()) < len(missing):
                 begin = time.monotonic()
@@ -159,7 +164,7 @@ class _Lost(Exception):
     """Batches that the scheduler knows no more."""
 
 
-def _on_client(client, sweep, missing, columns, batch, told):
+def _on_client(client, sweep, missing, wanted, batch, told):
     from concurrent.futures import CancelledError
 
     from distributed import as_completed
@@ -172,7 +177,7 @@ def _on_client(client, sweep, missing, columns, batch, told):
         for cases in batches:
             texts = [(case, sweep.scene_text(case)) for case in cases]
             # Workers that die are no fault of a batch.
-            return client.submit(_batch, texts, columns, pure=False, retries=10)
+            return client.submit(_batch, texts, wanted, pure=False, retries=10)
         return None
 
     # A few in flight: a million scenes need not be with the scheduler.
@@ -199,6 +204,7 @@ def main(arguments=None):
     parser.add_argument("--scene", help="base scene; that of the table if not given")
     parser.add_argument("-o", "--output", default="sweep", help="directory for the results; what is done there is not run again")
     parser.add_argument("--columns", default="", help="variables whose mean, least, largest and last value are wanted, too")
+    parser.add_argument("--growth", action="store_true", help="look at what grows about the start of each case, and at races that circle")
     parser.add_argument("--scheduler", help="address of a Dask scheduler, such as tcp://host:8786; a cluster of this machine if not given")
     parser.add_argument("--workers", type=int, help="processes of that cluster; as many as there are cores if not given")
     parser.add_argument("--batch", type=int, help="cases of a task")
@@ -209,6 +215,7 @@ def main(arguments=None):
         "columns": [name for name in given.columns.split(",") if name],
         "batch": given.batch,
         "progress": sys.stderr.isatty(),
+        "growth": given.growth,
     }
     try:
         if given.scheduler:

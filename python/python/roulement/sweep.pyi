@@ -28,5 +28,6 @@ def run(
     scheduler: str | Client | None = None,
     batch: int | None = None,
     progress: bool = False,
+    growth: bool = False,
 ) -> Table: ...
 def main(arguments: Sequence[str] | None = None) -> int: ...
