@@ -6,6 +6,7 @@ use std::fmt;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::simulation::inputs::RaceInput;
+use crate::simulation::system::Motion;
 
 /// [-] difference of both rates, over the one that was given, that is taken for a contradiction. A missing rate, a wrong
 /// sign or a wrong unit is beyond; what coarse steps of a vibration leave is below in most steps.
@@ -29,11 +30,6 @@ impl Contradiction {
     pub fn between(before: &RaceInput, now: &RaceInput, step: f64) -> Option<Self> {
         let moved = (now.pose.position - before.pose.position) / step;
         let given = 0.5 * (now.twist.velocity + before.twist.velocity);
-        let found = |turns: bool, by_pose: Vector3<f64>, given: Vector3<f64>, slow: f64| {
-            let difference = (by_pose - given).norm();
-            let contradicts = difference > slow && difference > DIFFERENCE * given.norm();
-            contradicts.then(|| Self { turns, by_pose: by_pose.norm(), given: given.norm() })
-        };
         let (turned, turning) = match (&before.axis, &now.axis) {
             (Some(before), Some(now)) => {
                 let across = |rate: Vector3<f64>| Vector3::new(0.0, rate.y, rate.z);
@@ -47,7 +43,21 @@ impl Contradiction {
                 (given + beyond, given)
             }
         };
-        found(true, turned, turning, SLOW_TURN).or_else(|| found(false, moved, given, SLOW))
+        Self::of(true, &turned, &turning).or_else(|| Self::of(false, &moved, &given))
+    }
+
+    /// The contradiction between two inputs of a component of a motion, a rotation or a displacement.
+    pub fn of_motion(turns: bool, before: &Motion, now: &Motion, step: f64) -> Option<Self> {
+        let along = |rate: f64| Vector3::x() * rate;
+        Self::of(turns, &along((now.value - before.value) / step), &along(0.5 * (now.rate + before.rate)))
+    }
+
+    /// The contradiction between two rates, by poses and as given.
+    fn of(turns: bool, by_pose: &Vector3<f64>, given: &Vector3<f64>) -> Option<Self> {
+        let slow = if turns { SLOW_TURN } else { SLOW };
+        let difference = (by_pose - given).norm();
+        let contradicts = difference > slow && difference > DIFFERENCE * given.norm();
+        contradicts.then(|| Self { turns, by_pose: by_pose.norm(), given: given.norm() })
     }
 }
 

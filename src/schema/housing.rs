@@ -4,6 +4,8 @@ use serde::Deserialize;
 
 use super::components::Components;
 use super::matrices::StructureMatrices;
+use super::schedule::{Schedule, some_schedule as some};
+use super::shaft::{GivenMotion, PointDisplacement, given};
 use super::support::DirectionMatrix;
 use super::units::*;
 
@@ -67,6 +69,36 @@ pub struct HousingLoad {
     /// [N m] moment, components about x, y, z.
     #[serde(default)]
     pub moment: Components<Moment>,
+    /// Displacement of the point, where that is given and not the force.
+    #[serde(default)]
+    pub displacement: PointDisplacement,
+    /// Rotation of the housing there, where that is given and not the moment.
+    #[serde(default)]
+    pub rotation: HousingRotation,
+}
+
+/// Rotation of a housing about some of the axes.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table { rx = ..., ry = ..., rz = ... }")]
+pub struct HousingRotation {
+    /// \[rad] rotation about x, constant, or over time as a smooth motion through the points of a table; what holds it there is a result.
+    #[serde(deserialize_with = "some::<Angle, _>")]
+    pub rx: Option<Schedule>,
+    /// \[rad] the same about y.
+    #[serde(deserialize_with = "some::<Angle, _>")]
+    pub ry: Option<Schedule>,
+    /// \[rad] the same about z.
+    #[serde(deserialize_with = "some::<Angle, _>")]
+    pub rz: Option<Schedule>,
+}
+
+impl HousingLoad {
+    /// Components of its motion that are given.
+    pub fn motion(&self) -> impl Iterator<Item = GivenMotion<'_>> {
+        let HousingRotation { rx, ry, rz } = &self.rotation;
+        let rotations = given([("rotation.rx", 3, rx), ("rotation.ry", 4, ry), ("rotation.rz", 5, rz)]);
+        self.displacement.motion().chain(rotations)
+    }
 }
 
 /// A point of a housing whose motion is reported.

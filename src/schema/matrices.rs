@@ -87,7 +87,7 @@ fn in_words(place: [f64; 3]) -> String {
     }
 }
 
-/// The same as matrices.
+/// Matrices of a structure, checked.
 #[derive(Clone, Debug)]
 pub struct StructureMatrices {
     /// Mass.
@@ -143,7 +143,7 @@ impl StructureMatrices {
 }
 
 impl Matrices {
-    /// The same as matrices. Errors name their `key`.
+    /// Matrices of the file. Errors name their `key`.
     ///
     /// # Errors
     /// With the matrix and what is wrong with it.

@@ -267,7 +267,7 @@ pub struct Load {
     /// About z.
     #[serde(default)]
     pub rz: Tilt,
-    /// The same five directions of an outer race under a wrench.
+    /// Five such directions of an outer race under a wrench.
     pub outer: Option<RaceLoad>,
     /// Forces that turn, added to the loads of the race that a wrench moves.
     #[serde(default)]
@@ -394,7 +394,7 @@ pub enum Dependencies {
 pub struct Interface {
     /// How orientations are written.
     pub orientation: Orientation,
-    /// What the lists of dependencies are about; those of a shaft with its bearings are always about the communication point.
+    /// Span that the lists of dependencies are about; those of a shaft with its bearings are always about the communication point.
     pub dependencies: Dependencies,
     /// Who gives each group of inputs: the scene's script or the master.
     pub inputs: InputGivers,

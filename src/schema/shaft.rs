@@ -7,7 +7,7 @@ use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use super::components::Components;
 use super::machine::{GearSection, RotatingSection};
 use super::matrices::StructureMatrices;
-use super::schedule::{self, Schedule};
+use super::schedule::{Schedule, some_schedule as some};
 use super::sections::Material;
 use super::units::*;
 
@@ -181,6 +181,24 @@ pub struct PointDisplacement {
     pub z: Option<Schedule>,
 }
 
+impl PointDisplacement {
+    /// Components that are given: key, component and schedule.
+    pub fn motion(&self) -> impl Iterator<Item = GivenMotion<'_>> {
+        let Self { x, y, z } = self;
+        given([("displacement.x", 0, x), ("displacement.y", 1, y), ("displacement.z", 2, z)])
+    }
+}
+
+/// Component of a motion that is given: its key, which one (displacements 0 to 2, rotations 3 to 5), and over time.
+pub type GivenMotion<'a> = (&'static str, usize, &'a Schedule);
+
+/// Those of some components that are given.
+pub(super) fn given<'a, const N: usize>(
+    all: [(&'static str, usize, &'a Option<Schedule>); N],
+) -> impl Iterator<Item = GivenMotion<'a>> {
+    all.into_iter().filter_map(|(key, component, given)| Some((key, component, given.as_ref()?)))
+}
+
 /// Tilt at a point about some of the axes.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table { ry = ..., rz = ... }")]
@@ -194,17 +212,10 @@ pub struct PointRotation {
 }
 
 impl PointLoad {
-    /// What is given of its motion: key, component (displacements 0 to 2, rotations 3 to 5), and schedule.
-    pub fn motion(&self) -> impl Iterator<Item = (&'static str, usize, &Schedule)> {
-        let (PointDisplacement { x, y, z }, PointRotation { ry, rz }) = (&self.displacement, &self.rotation);
-        let all = [
-            ("displacement.x", 0, x),
-            ("displacement.y", 1, y),
-            ("displacement.z", 2, z),
-            ("rotation.ry", 4, ry),
-            ("rotation.rz", 5, rz),
-        ];
-        all.into_iter().filter_map(|(key, component, given)| Some((key, component, given.as_ref()?)))
+    /// Components of its motion that are given.
+    pub fn motion(&self) -> impl Iterator<Item = GivenMotion<'_>> {
+        let PointRotation { ry, rz } = &self.rotation;
+        self.displacement.motion().chain(given([("rotation.ry", 4, ry), ("rotation.rz", 5, rz)]))
     }
 }
 
@@ -337,10 +348,4 @@ pub struct Preload {
     pub force: Option<Force>,
     /// \[m] way, such as what a spacer is ground by.
     pub displacement: Option<Length>,
-}
-
-fn some<'de, Q: Quantity, D: serde::Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<Schedule>, D::Error> {
-    schedule::deserialize::<Q, D>(deserializer).map(Some)
 }

@@ -10,15 +10,15 @@ use crate::simulation::inputs::AxisInput;
 
 /// A cubic in time with given values and rates at both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Cubic([Vector3<f64>; 4]);
+struct Cubic<const N: usize>([SVector<f64, N>; 4]);
 
-impl Cubic {
+impl<const N: usize> Cubic<N> {
     /// Cubic from `x0`, rate `v0` to `x1`, rate `v1` within `duration` \[s].
     fn hermite(
-        x0: Vector3<f64>,
-        v0: Vector3<f64>,
-        x1: Vector3<f64>,
-        v1: Vector3<f64>,
+        x0: SVector<f64, N>,
+        v0: SVector<f64, N>,
+        x1: SVector<f64, N>,
+        v1: SVector<f64, N>,
         duration: f64,
     ) -> Self {
         let mean = (x1 - x0) / duration;
@@ -32,13 +32,63 @@ impl Cubic {
 
     /// Is it 0 at all times?
     fn is_zero(&self) -> bool {
-        self.0 == [Vector3::zeros(); 4]
+        self.0 == [SVector::<f64, N>::zeros(); 4]
     }
 
     /// Value and rate after `t` \[s].
-    fn at(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+    fn at(&self, t: f64) -> (SVector<f64, N>, SVector<f64, N>) {
         let [x0, v0, c2, c3] = self.0;
         (x0 + (v0 + (c2 + c3 * t) * t) * t, v0 + (c2 * 2.0 + c3 * (3.0 * t)) * t)
+    }
+
+    /// Rate of the rate after `t` \[s].
+    fn acceleration(&self, t: f64) -> SVector<f64, N> {
+        let [_, _, c2, c3] = self.0;
+        c2 * 2.0 + c3 * (6.0 * t)
+    }
+}
+
+/// Component of a motion that is given from outside: value [m, rad], its rate, and the rate of that.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Motion {
+    /// [m, rad] where it is.
+    pub value: f64,
+    /// [m/s, rad/s] its rate.
+    pub rate: f64,
+    /// [m/s2, rad/s2] rate of that.
+    pub acceleration: f64,
+}
+
+/// Path of such a component over one communication step: a cubic from where the last path ended to where inputs lead, as the position
+/// of a race has.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MotionPath {
+    start_time: f64,
+    path: Cubic<1>,
+}
+
+impl MotionPath {
+    /// Path with a steady acceleration.
+    pub fn steady(start_time: f64, motion: &Motion) -> Self {
+        let Motion { value, rate, acceleration } = *motion;
+        let path = Cubic([value, rate, 0.5 * acceleration, 0.0].map(|factor| SVector::from([factor])));
+        Self { start_time, path }
+    }
+
+    /// Path from where this one is at `time` \[s] to where inputs that are valid then lead within `duration` \[s].
+    pub fn towards(&self, time: f64, input: &Motion, duration: f64) -> Self {
+        let (now, rate) = self.path.at(time - self.start_time);
+        let gain = input.acceleration * duration;
+        let end = SVector::from([input.value + (input.rate + gain * 0.5) * duration]);
+        let path = Cubic::hermite(now, rate, end, SVector::from([input.rate + gain]), duration);
+        Self { start_time: time, path }
+    }
+
+    /// Motion at a time \[s].
+    pub fn at(&self, time: f64) -> Motion {
+        let t = time - self.start_time;
+        let (value, rate) = self.path.at(t);
+        Motion { value: value[0], rate: rate[0], acceleration: self.path.acceleration(t)[0] }
     }
 }
 
@@ -49,7 +99,7 @@ impl Cubic {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RacePath {
     start_time: f64,
-    position: Cubic,
+    position: Cubic<3>,
     orientation: OrientationPath,
 }
 
@@ -58,9 +108,9 @@ pub struct RacePath {
 enum OrientationPath {
     /// A turn at the announced angular velocity `w` times a small correction, whose conformal rotation vector `e(t)` is a
     /// cubic: `R(t) = exp(w t) R(e(t)) R(0)`.
-    Turn { start: UnitQuaternion<f64>, turn: Vector3<f64>, correction: Cubic },
+    Turn { start: UnitQuaternion<f64>, turn: Vector3<f64>, correction: Cubic<3> },
     /// Turn and tilts of [`tilt`]: both tilts are cubics, the spin speed is linear.
-    Axis(Cubic),
+    Axis(Cubic<3>),
 }
 
 impl RacePath {

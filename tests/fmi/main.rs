@@ -8,6 +8,7 @@ mod dependencies;
 mod film;
 #[path = "../fmi2_abi/mod.rs"]
 mod fmi2_abi;
+mod given;
 mod growth;
 mod housing;
 mod orientations;

@@ -631,6 +631,26 @@ fn invariant_the_motion_of_the_frame_is_an_input_of_the_machine_and_a_table_of_i
     run(c, 0..5);
     run(c_other, 0..5);
     assert_eq!(bits(&outputs(&package, c)), bits(&outputs(&other, c_other)));
+    // Led there by its rate, it goes the same way as to what is set.
+    let led = [(0.0, 1e7), (200.0, 0.0)].map(|(value, rate)| {
+        let c = package.start();
+        set(&package, c, "frame.acceleration.y", 10.0 + value);
+        let reference = package.reference("frame.acceleration.y");
+        assert_eq!(unsafe { fmi2SetRealInputDerivatives(c, &reference, 1, &1, &rate) }, Status::Ok);
+        run(c, 0..1);
+        let found = outputs(&package, c);
+        unsafe { fmi2FreeInstance(c) };
+        found
+    });
+    let apart = led[0]
+        .iter()
+        .zip(&led[1])
+        .map(|(by_rate, by_value)| (by_rate - by_value).abs() / by_value.abs().max(1e-6));
+    assert!(apart.fold(0.0, f64::max) < 1e-9);
+    let c = package.start();
+    run(c, 0..1);
+    assert!((outputs(&package, c)[0] - led[0][0]).abs() > 1e-9, "it went somewhere");
+    unsafe { fmi2FreeInstance(c) };
     // A table is played, as in a native run, until it is set.
     let table = framed("[[0, 0], [\"100 us\", 100]]");
     let scripted = Package::of_system("system-frame-table", &table);

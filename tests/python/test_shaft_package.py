@@ -173,3 +173,44 @@ def test_a_package_of_equilibria_is_that_of_the_command(tmp_path):
     # Steps of any length: there is no motion in between.
     assert math.isclose(shaft.get("shaft.angle")[0], time * 100 * 2 * math.pi, rel_tol=1e-12)
     shaft.close()
+
+
+def test_a_motion_that_is_set_is_that_of_a_table(tmp_path):
+    # A point that goes 3 um away, in 0.2 ms: from rest to rest, a cubic.
+    end, way = 2e-4, 3e-6
+    of_load = "force = [337.8, 0, 1260.5]\nmoment = [30.0, 0, -8.04]\ndisplacement = { y = %s }"
+    given = TEXT.replace("force = [337.8, -475.0, 1260.5]\nmoment = [30.0, 0, -8.04]", of_load)
+    names = ["mesh.force.y", "left.inner.force.y", "right.inner.force.x", "shaft.energy.work"]
+    settings = {"stop_time": 4e-4, "step_size": STEP, "output_interval": STEP}
+    table = build(given % f"[[0, 0], [{end}, {way}]]", tmp_path, "table")
+    wanted = simulate_fmu(str(table), output=names, **settings)
+    package = build(given % "0", tmp_path, "set")
+    assert validate_fmu(str(package)) == []
+    variables = {v.name: v for v in read_model_description(package).modelVariables}
+    assert [variables[f"mesh.{name}"].causality for name in ("displacement.y", "velocity.y", "force.y", "displacement.z")] == [
+        "input",
+        "input",
+        "output",
+        "output",
+    ]
+
+    def at(time):
+        t = min(time / end, 1.0)
+        return way * t * t * (3 - 2 * t), way / end * 6 * t * (1 - t)
+
+    slave = Slave(package, tmp_path / "unzipped").start()
+    try:
+        for k in range(20):
+            (_, rate), (value, end_rate) = at(k * STEP), at((k + 1) * STEP)
+            # Value, rate and rate of that which lead to where the table is at the next point.
+            slave.set(mesh__displacement__y=value - 0.5 * (rate + end_rate) * STEP, mesh__velocity__y=rate)
+            slave.fmu.setRealInputDerivatives([slave.references["mesh.velocity.y"]], [1], [(end_rate - rate) / STEP])
+            slave.fmu.doStep(k * STEP, STEP)
+            for name in names:
+                found = slave.fmu.getReal([slave.references[name]])[0]
+                size = max(abs(wanted[name][k + 1]), 1.0)
+                assert abs(found - wanted[name][k + 1]) < 1e-9 * size, (name, k)
+    finally:
+        slave.fmu.terminate()
+        slave.fmu.freeInstance()
+    assert abs(wanted["mesh.force.y"][-1]) > 10

@@ -72,6 +72,37 @@ fn invariant_twenty_bearings_take_no_more_work_each_than_two() {
     }
 }
 
+/// [-] corrections a step of a machine whose matrices are new in every step.
+fn corrections(bearings: usize) -> f64 {
+    let text = plain(bearings, false)
+        .replace("heathcote_slip = false }", "heathcote_slip = false }\nsolver = { matrix_reuse = 0 }");
+    let mut machine = system(&text);
+    let count = |machine: &System| {
+        let (_, first) = machine.bearings().next().unwrap();
+        let work = first.state().statistics;
+        [work.newton.iterations, work.steps]
+    };
+    machine.advance(2e-4).unwrap();
+    let before = count(&machine);
+    machine.advance(1e-3).unwrap();
+    let after = count(&machine);
+    (after[0] - before[0]) as f64 / (after[1] - before[1]) as f64
+}
+
+/// A correction is one of all bearings, as the shaft joins them, and the worst ball of all asks for it: with new matrices the second one of a
+/// step comes as often as one of so many independent pairs asks for it.
+#[test]
+fn closed_form_corrections_of_many_bearings_are_those_of_the_worst() {
+    let asked = corrections(2) - 1.0;
+    for bearings in [5, 10, 20] {
+        let pairs = bearings as f64 / 2.0;
+        let (found, foreseen) = (corrections(bearings), 2.0 - (1.0 - asked).powf(pairs));
+        println!("{bearings}: {found:.2} corrections a step, foreseen {foreseen:.2}");
+        assert!((found - foreseen).abs() < 0.25 && found < 2.05, "{bearings}: {found} {foreseen}");
+    }
+    assert!(asked > 0.05 && asked < 0.5, "{asked}");
+}
+
 #[test]
 fn regression_instructions_of_recorded_machines_grow_with_their_bearings() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/shaft-cost.csv");

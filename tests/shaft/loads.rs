@@ -299,9 +299,9 @@ fn refusal_motions_that_are_given_name_their_keys() {
     }
 }
 
-/// In a package what holds a given motion is an output, and the motion no input.
+/// In a package what holds a given motion is an output, and motion and rate are inputs.
 #[test]
-fn rows_of_a_given_motion_are_what_holds_it() {
+fn rows_of_a_given_motion_are_inputs_and_what_holds_it_an_output() {
     let machine = Machine::new(&MachineScene::from(scene(&given(
         "displacement = { x = \"100 um\", y = 0 }\nrotation = { rz = 0 }",
     ))))
@@ -318,10 +318,140 @@ fn rows_of_a_given_motion_are_what_holds_it() {
     assert!((force + bearing).abs() < 1e-6 * bearing.abs(), "{force} {bearing}");
     assert_eq!(row("hold.moment.z").0, Causality::Output);
     assert_eq!(row("hold.force.z").0, Causality::Input);
+    assert_eq!(row("hold.displacement.x"), (Causality::Input, 100e-6));
+    for (name, causality) in [
+        ("hold.velocity.x", Causality::Input),
+        ("hold.displacement.y", Causality::Input),
+        ("hold.displacement.z", Causality::Output),
+        ("hold.velocity.z", Causality::Output),
+        ("hold.tilt.y", Causality::Output),
+        ("hold.tilt.z", Causality::Input),
+        ("hold.tilt_rate.z", Causality::Input),
+    ] {
+        assert_eq!(row(name).0, causality, "{name}");
+    }
     assert!(
-        !table
-            .rows()
-            .iter()
-            .any(|row| row.name.contains("hold.displacement") && row.causality == Causality::Input)
+        !table.rows().iter().any(|row| row.name == "hold.tilt_rate.y"),
+        "no output has a rate of its tilt"
     );
+}
+
+/// A shaft on two bearings, one of them in a housing on a foot, each with a named load.
+fn housed(of_shaft: &str, of_housing: &str) -> String {
+    format!(
+        r#"[shaft]
+speed = 300
+mass = 1.2
+centre = 0.03
+polar_inertia = 6e-4
+transverse_inertia = 4e-3
+[[shaft.load]]
+name = "press"
+position = 0.03
+{of_shaft}
+[[housing]]
+name = "case"
+mass = 3
+inertia = [0.01, 0.01, 0.01]
+centre = [0.06, 0, 0]
+stiffness = [1e8, 1e8, 1e8, 1e6, 1e6, 1e6]
+damping = [2e3, 2e3, 2e3, 20, 20, 20]
+[[housing.load]]
+name = "shaker"
+position = [0.06, 0, 0]
+{of_housing}
+[[bearing]]
+name = "left"
+catalogue = "6206"
+mounting = {{ position = 0 }}
+[bearing.set]
+effects = {{ creep = "saturated", heathcote_slip = false }}
+[[bearing]]
+name = "right"
+catalogue = "6206"
+mounting = {{ position = 0.06, housing = "case", axial = "free" }}
+[bearing.set]
+effects = {{ creep = "saturated", heathcote_slip = false }}
+[load]
+duration = 0.002
+output_interval = 0.0002
+"#
+    )
+}
+
+/// A housing whose motion is given: its springs and the bearing in it are what the shaker holds, and the place is where it was put.
+#[test]
+fn identity_what_holds_a_housing_is_what_its_springs_and_its_bearing_take() {
+    let all =
+        "displacement = { x = 0, y = \"20 um\", z = \"-10 um\" }\nrotation = { rx = 0, ry = 0, rz = 0 }";
+    let text = housed("force = [150, 0, -300]", all);
+    let mut system = system(&text);
+    let check = |system: &System, allowed: f64| {
+        let [y, z] = [1, 2].map(|axis| system.outputs().holding[axis]);
+        let outer = system.bearings().nth(1).unwrap().1.outputs().outer.wrench.force;
+        for (held, spring, bearing) in [(y, 1e8 * 20e-6, outer.y), (z, -1e8 * 10e-6, outer.z)] {
+            assert!((held + bearing - spring).abs() < allowed * spring.abs(), "{held} {spring} {bearing}");
+        }
+        assert!(outer.norm() > 100.0, "{outer}");
+    };
+    check(&system, 1e-9);
+    assert_eq!(system.outputs().holding.len(), 6);
+    system.advance(1e-3).unwrap();
+    check(&system, 1e-9);
+    let place = &system.outputs().housings[0].loads[0];
+    assert_eq!(place.displacement, Vector3::new(0.0, 20e-6, -10e-6));
+    assert_eq!(place.tilt, Vector3::zeros());
+}
+
+/// A housing that is moved is a shaft that is moved the other way: the force of the bearing between both knows nothing else.
+#[test]
+fn invariant_a_bearing_sees_where_its_races_are_to_each_other() {
+    let still = "displacement = { x = 0, y = 0, z = 0 }\nrotation = { ry = 0, rz = 0 }";
+    let fixed = "displacement = { x = 0, y = 0, z = 0 }\nrotation = { rx = 0, ry = 0, rz = 0 }";
+    let moved = |text: &str, y: &str| text.replace("x = 0, y = 0,", &format!("x = 0, y = \"{y} um\","));
+    let force = |text: &str| {
+        let system = system(text);
+        system.bearings().nth(1).unwrap().1.outputs().inner.wrench.force
+    };
+    let by_housing = force(&housed(still, &moved(fixed, "-20")));
+    let by_shaft = force(&housed(&moved(still, "20"), fixed));
+    assert!((by_housing - by_shaft).norm() < 1e-9 * by_shaft.norm(), "{by_housing} {by_shaft}");
+    assert!(by_shaft.y < -500.0, "{by_shaft}");
+}
+
+/// A housing that is shaken through its foot's place: energy that the shaker puts in is accounted for, and steps are of second order.
+#[test]
+fn invariant_energy_and_order_of_a_housing_that_is_shaken() {
+    let shaken = "displacement = { z = [[0, 0], [\"0.5 ms\", \"15 um\"], [\"1.5 ms\", \"-5 um\"]] }";
+    let text = housed("force = [30, 0, -200]", shaken);
+    let mut system = system(&text);
+    let before = stored(&system);
+    system.advance(2e-3).unwrap();
+    let [of_shaft, of_bearings] = imbalance(&system, &before);
+    assert!(of_shaft < 2e-3 && of_bearings < 1e-2, "{of_shaft} {of_bearings}");
+    let energies = &system.outputs().housings[0].energies;
+    let left = energies.unaccounted() / (energies.input.abs() + energies.bearings.abs());
+    assert!(left.abs() < 2e-3 && energies.input.abs() > 1e-6, "{left} {energies:?}");
+    assert_order_two(&text, 1e-3, 2e-6, |system| system.outputs().seats[1].displacement);
+}
+
+#[test]
+fn refusal_motions_of_a_housing_name_their_keys() {
+    for (load, parts) in [
+        ("displacement = { y = 0.2 }", ["housing.load \"shaker\": displacement.y", "0.1"]),
+        (
+            "rotation = { rx = 0 }\nmoment = [3, 0, 0]",
+            ["housing.load \"shaker\": rotation.rx", "so is moment"],
+        ),
+        (
+            "displacement = { y = 0 }\n[[housing.load]]\nname = \"end\"\nposition = [0.06, 0, 0]\ndisplacement = { y = 0 }",
+            ["housing.load \"end\": displacement.y", "take it out"],
+        ),
+    ] {
+        let why = match SystemScene::edited(&housed("", load)) {
+            Err(why) => why.to_string(),
+            Ok(scene) => System::new(&scene).map(drop).unwrap_err().to_string(),
+        };
+        assert!(parts.iter().all(|part| why.contains(part)), "{why}");
+    }
 }

@@ -22,6 +22,8 @@ const SECTIONS: [(&str, &str); 24] = [
     ("HousingSection", "housing"),
     ("Foot", "housing.foot"),
     ("HousingLoad", "housing.load"),
+    ("PointDisplacement", "housing.load.displacement"),
+    ("HousingRotation", "housing.load.rotation"),
     ("HousingPoint", "housing.point"),
     ("MeshSection", "mesh"),
     ("MeshGear", "mesh.gears"),

@@ -70,12 +70,10 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
             forces.into_iter().chain(others).map(|(quantity, unit)| (format!("{name}.{quantity}"), unit)),
         );
     }
-    for (shaft, own) in scene.shafts.iter().enumerate() {
-        columns.extend(scene.held(shaft).map(|(load, _, component, _)| {
-            let (what, unit) = if component < 3 { ("force", "N") } else { ("moment", "N m") };
-            (format!("{}.{what}.{}", own.load[load].name, ["x", "y", "z"][component % 3]), unit)
-        }));
-    }
+    columns.extend(scene.motions().map(|(load, (_, component, _))| {
+        let (what, unit) = if component < 3 { ("force", "N") } else { ("moment", "N m") };
+        (format!("{}.{what}.{}", load.name, ["x", "y", "z"][component % 3]), unit)
+    }));
     columns
 }
 
@@ -103,6 +101,26 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
     row
 }
 
+/// Curves of a plot: as many as there are colours for.
+const CURVES: usize = 7;
+
+/// Value in a row.
+type Get = Box<dyn Fn(&SystemOutputs) -> f64>;
+
+/// Quantity over time of parts with their names.
+fn over_time(
+    rows: &[SystemOutputs],
+    y_label: &'static str,
+    parts: impl Iterator<Item = (String, Get)>,
+) -> Panel {
+    let curve = |(name, get): (String, Get)| Curve {
+        name,
+        points: rows.iter().map(|row| (row.time * 1e3, get(row))).collect(),
+        band: vec![],
+    };
+    Panel { x_label: "time [ms]", y_label, curves: parts.take(CURVES).map(curve).collect(), least: 1e-3 }
+}
+
 /// Draws the shaft's motion at its bearings over time, its path there, and the motion of housings at their bearings.
 ///
 /// # Errors
@@ -112,55 +130,38 @@ pub fn write_plot(
     rows: &[SystemOutputs],
     directory: &Path,
 ) -> Result<PathBuf, PlotError> {
-    let names: Vec<&str> = scene.bearings.iter().map(|bearing| bearing.name.as_str()).collect();
-    // As many as there are colours for.
-    let shown = names.len().min(7);
-    let over_time = |y_label, least, get: fn(&PointOutput) -> f64| Panel {
-        x_label: "time [ms]",
-        y_label,
-        curves: (0..shown)
-            .map(|k| Curve {
-                name: names[k].to_string(),
-                points: rows.iter().map(|row| (row.time * 1e3, get(&row.seats[k]))).collect(),
-                band: vec![],
-            })
-            .collect(),
-        least,
+    let names = || scene.bearings.iter().map(|bearing| bearing.name.clone()).enumerate();
+    let of_seats = |y_label, get: fn(&PointOutput) -> f64| {
+        let seat = |k| -> Get { Box::new(move |row| get(&row.seats[k])) };
+        over_time(rows, y_label, names().map(|(k, name)| (name, seat(k))))
+    };
+    let of_shafts = |y_label, get: fn(&ShaftOutputs) -> f64| {
+        let shaft = |k| -> Get { Box::new(move |row| get(&row.shafts[k])) };
+        let shafts = scene.shafts.iter().enumerate();
+        over_time(rows, y_label, shafts.map(|(k, own)| (own.name.clone(), shaft(k))))
     };
     // In the second half, about its mean: bearings lie apart by more than they move, and a start goes further than an orbit.
     let later = &rows[rows.len() / 2..];
-    let path = |k: usize| {
+    let path = |(k, name): (usize, String)| {
         let mean =
             later.iter().map(|row| row.seats[k].displacement).sum::<Vector3<f64>>() / later.len() as f64;
         let points = later.iter().map(|row| (row.seats[k].displacement - mean) * 1e6);
-        Curve { name: names[k].to_string(), points: points.map(|d| (d.y, d.z)).collect(), band: vec![] }
-    };
-    let of_shafts = |y_label, least, get: fn(&ShaftOutputs) -> f64| Panel {
-        x_label: "time [ms]",
-        y_label,
-        curves: (scene.shafts.iter().take(7).enumerate())
-            .map(|(k, shaft)| Curve {
-                name: shaft.name.clone(),
-                points: rows.iter().map(|row| (row.time * 1e3, get(&row.shafts[k]))).collect(),
-                band: vec![],
-            })
-            .collect(),
-        least,
+        Curve { name, points: points.map(|d| (d.y, d.z)).collect(), band: vec![] }
     };
     let mut panels = vec![
         Panel {
             x_label: "y [um]",
             y_label: "path of the shaft at its bearings about its mean: z [um]",
-            curves: (0..shown).map(path).collect(),
+            curves: names().take(CURVES).map(path).collect(),
             least: 1e-3,
         },
-        over_time("along the axis, x [um]", 1e-3, |point| point.displacement.x * 1e6),
-        over_time("displacement y [um]", 1e-3, |point| point.displacement.y * 1e6),
-        over_time("displacement z [um]", 1e-3, |point| point.displacement.z * 1e6),
-        over_time("tilt about y [urad]", 1e-3, |point| point.tilt.y * 1e6),
-        over_time("tilt about z [urad]", 1e-3, |point| point.tilt.z * 1e6),
-        of_shafts("speed [rad/s]", 1e-3, |row| row.spin.speed),
-        of_shafts("torque that drives the shaft [N m]", 1e-3, |row| row.torque),
+        of_seats("along the axis, x [um]", |point| point.displacement.x * 1e6),
+        of_seats("displacement y [um]", |point| point.displacement.y * 1e6),
+        of_seats("displacement z [um]", |point| point.displacement.z * 1e6),
+        of_seats("tilt about y [urad]", |point| point.tilt.y * 1e6),
+        of_seats("tilt about z [urad]", |point| point.tilt.z * 1e6),
+        of_shafts("speed [rad/s]", |row| row.spin.speed),
+        of_shafts("torque that drives the shaft [N m]", |row| row.torque),
     ];
     panels.extend(of_housings(scene, rows));
     let path = directory.join("shaft.svg");
@@ -171,38 +172,29 @@ pub fn write_plot(
 
 /// Motion of the housings at their bearings over time.
 fn of_housings(scene: &SystemScene, rows: &[SystemOutputs]) -> Vec<Panel> {
-    let seats: Vec<(usize, usize, &str)> = (0..scene.housings.len())
+    let seats: Vec<(usize, usize, usize)> = (0..scene.housings.len())
         .flat_map(|housing| {
             let bearings = scene.bearings_in(housing).enumerate();
-            bearings.map(move |(seat, bearing)| (housing, seat, scene.bearings[bearing].name.as_str()))
+            bearings.map(move |(seat, bearing)| (housing, seat, bearing))
         })
-        .take(7)
         .collect();
     if seats.is_empty() {
         return vec![];
     }
-    let over_time = |y_label, get: fn(&PointOutput) -> f64| Panel {
-        x_label: "time [ms]",
-        y_label,
-        curves: seats
-            .iter()
-            .map(|(housing, seat, name)| Curve {
-                name: format!("{} at {name}", scene.housings[*housing].name),
-                points: rows
-                    .iter()
-                    .map(|row| (row.time * 1e3, get(&row.housings[*housing].seats[*seat])))
-                    .collect(),
-                band: vec![],
-            })
-            .collect(),
-        least: 1e-3,
+    let of_seats = |y_label, get: fn(&PointOutput) -> f64| {
+        let seats = seats.iter().map(|&(housing, seat, bearing)| {
+            let name = format!("{} at {}", scene.housings[housing].name, scene.bearings[bearing].name);
+            let get: Get = Box::new(move |row| get(&row.housings[housing].seats[seat]));
+            (name, get)
+        });
+        over_time(rows, y_label, seats)
     };
     vec![
-        over_time("housing along the axis, x [um]", |point| point.displacement.x * 1e6),
-        over_time("housing, displacement y [um]", |point| point.displacement.y * 1e6),
-        over_time("housing, displacement z [um]", |point| point.displacement.z * 1e6),
-        over_time("housing, tilt about y [urad]", |point| point.tilt.y * 1e6),
-        over_time("housing, tilt about z [urad]", |point| point.tilt.z * 1e6),
+        of_seats("housing along the axis, x [um]", |point| point.displacement.x * 1e6),
+        of_seats("housing, displacement y [um]", |point| point.displacement.y * 1e6),
+        of_seats("housing, displacement z [um]", |point| point.displacement.z * 1e6),
+        of_seats("housing, tilt about y [urad]", |point| point.tilt.y * 1e6),
+        of_seats("housing, tilt about z [urad]", |point| point.tilt.z * 1e6),
     ]
 }
 

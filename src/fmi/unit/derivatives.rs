@@ -43,8 +43,11 @@ impl Changes {
             Some(InputKind::Friction) => self.friction,
             Some(InputKind::Temperature) => self.displacement / (STEEL_EXPANSION * self.length),
             None => match row.unit.name {
-                // Loads, torques and the speed of a shaft.
+                // Loads, torques and the speed of a shaft, and motions that are given.
                 _ if row.small_change().is_some() => row.small_change().unwrap_or(f64::NAN),
+                "m" => self.displacement,
+                "rad" => self.displacement / self.length,
+                "m/s" => self.velocity,
                 "N" => self.force,
                 "N.m" => self.force * self.length,
                 "rad/s" => self.velocity / self.length,

@@ -2,7 +2,7 @@
 //! every row, by value reference; those of outputs are ignored where values go in.
 //!
 //! Its scripts are, in this order: those of every bearing, group by group; where there are shafts, one of each named load, one of each gear,
-//! that of the drive of each shaft.
+//! that of the drive of each shaft, one of each motion that is given, that of the frame.
 
 mod derivatives;
 
@@ -19,7 +19,9 @@ use crate::interface::contradiction::Contradiction;
 use crate::interface::variables::{Causality, MachineGroup, MachineVariables, Variable};
 use crate::model::bodies::Race;
 use crate::scene::machine::MachineScene;
+use crate::scene::system::NamedLoad;
 use crate::scene::{Giver, Group, Groups, Level, Scene, SceneError, Solver};
+use crate::schema::GivenMotion;
 use crate::simulation::alarms::Alarms;
 use crate::simulation::driven::{MachineInputs, MachineSnapshot};
 use crate::simulation::machine::{Machine, MachineError, follows_time};
@@ -41,6 +43,8 @@ pub struct Unit {
     machine: Machine,
     /// Inputs of the next step.
     next: MachineInputs,
+    /// Groups of its inputs, one of each script.
+    groups: Arc<Vec<MachineGroup>>,
     /// [`Unit::scripts`].
     scripts: Vec<Option<Giver>>,
 }
@@ -74,9 +78,25 @@ fn scripts(machine: &Machine, scene: &MachineScene) -> Vec<Option<Giver>> {
         let loads = scene.loads().map(|load| load.is_scripted());
         let gears = scene.gears().map(|gear| gear.torque.is_scripted());
         let drives = scene.shafts.iter().map(drive_is_scripted);
+        let motions = scene.motions().map(|(_, (.., schedule))| schedule.is_scripted());
         let frame = scene.frame.iter().map(FrameSection::is_scripted);
-        let of_shaft = loads.chain(gears).chain(drives).chain(frame);
+        let of_shaft = loads.chain(gears).chain(drives).chain(motions).chain(frame);
         all.extend(of_shaft.map(|scripted| scripted.then_some(Giver::Scene)));
+    }
+    all
+}
+
+/// Groups of the inputs of a machine, one of each of [`scripts`].
+fn groups(machine: &Machine, scene: &MachineScene) -> Vec<MachineGroup> {
+    let bearings = 0..machine.bearings().count();
+    let of_bearing = |index| Group::VARIANTS.iter().map(move |&group| MachineGroup::Bearing(index, group));
+    let mut all: Vec<_> = bearings.flat_map(of_bearing).collect();
+    if let Some(scene) = scene.shaft() {
+        all.extend((0..scene.loads().count()).map(MachineGroup::Load));
+        all.extend((0..scene.gears().count()).map(MachineGroup::Gear));
+        all.extend((0..scene.shafts.len()).map(MachineGroup::Drive));
+        all.extend((0..scene.motions().count()).map(MachineGroup::Motion));
+        all.extend(scene.frame.iter().map(|_| MachineGroup::Frame));
     }
     all
 }
@@ -89,8 +109,8 @@ impl Unit {
     pub fn new(scene: MachineScene) -> Outcome<Self> {
         let machine = Machine::new(&scene).map_err(|why| refused(&why))?;
         let variables = Arc::new(MachineVariables::new(&machine));
-        let scripts = scripts(&machine, &scene);
-        Ok(Self { variables, scene: Arc::new(scene), next: machine.inputs(), machine, scripts })
+        let (groups, scripts) = (Arc::new(groups(&machine, &scene)), scripts(&machine, &scene));
+        Ok(Self { variables, scene: Arc::new(scene), next: machine.inputs(), machine, groups, scripts })
     }
 
     /// The variables; the index of a row is its value reference.
@@ -232,41 +252,15 @@ impl Unit {
         self.machine.restore(snapshot)
     }
 
-    /// Numbers of bearings, of named loads and of gears.
-    fn counts(&self) -> [usize; 3] {
-        let shaft = self.scene.shaft();
-        let loads = shaft.map_or(0, |scene| scene.loads().count());
-        [self.next.bearings.len(), loads, shaft.map_or(0, |scene| scene.gears().count())]
-    }
-
-    /// Number of drives.
-    fn drives(&self) -> usize {
-        self.scene.shaft().map_or(0, |scene| scene.shafts.len())
-    }
-
     /// Scripts: who gives what there is one for; none where the scene has no script.
     pub fn scripts(&self) -> &[Option<Giver>] {
         &self.scripts
     }
 
-    /// Group of inputs that a script gives.
-    fn group(&self, script: usize) -> MachineGroup {
-        let [bearings, loads, gears] = self.counts();
-        match script.checked_sub(GROUPS * bearings) {
-            None => MachineGroup::Bearing(script / GROUPS, Group::VARIANTS[script % GROUPS]),
-            Some(load) if load < loads => MachineGroup::Load(load),
-            Some(gear) if gear < loads + gears => MachineGroup::Gear(gear - loads),
-            Some(drive) if drive < loads + gears + self.drives() => {
-                MachineGroup::Drive(drive - loads - gears)
-            }
-            Some(_) => MachineGroup::Frame,
-        }
-    }
-
     /// Name of what a script gives, in words, and its group.
     pub fn script_name(&self, script: usize) -> (String, Group) {
         let load = |index: usize| self.scene.shaft().and_then(|scene| scene.loads().nth(index));
-        match self.group(script) {
+        match self.groups[script] {
             MachineGroup::Load(index) => {
                 (load(index).map_or_else(String::new, |load| load.name.into()), Group::Loads)
             }
@@ -278,6 +272,12 @@ impl Unit {
                     Group::Speeds,
                 )
             }
+            MachineGroup::Motion(index) => {
+                let given = self.scene.shaft().and_then(|scene| scene.motions().nth(index));
+                let name =
+                    |(load, (key, ..)): (NamedLoad<'_>, GivenMotion<'_>)| format!("{}.{key}", load.name);
+                (given.map_or_else(String::new, name), Group::Tilts)
+            }
             MachineGroup::Frame => (Group::Frame.to_string(), Group::Frame),
             MachineGroup::Bearing(index, group) => match self.machine.bearings().nth(index) {
                 Some((name, _)) if !name.is_empty() => (format!("{group} of {name}"), group),
@@ -288,35 +288,33 @@ impl Unit {
 
     /// The script that may give an input.
     pub fn script_of(&self, reference: usize) -> Option<usize> {
-        let [bearings, loads, gears] = self.counts();
-        Some(match self.variables.group(reference, &self.machine)? {
-            MachineGroup::Bearing(index, group) => GROUPS * index + group as usize,
-            MachineGroup::Load(load) => GROUPS * bearings + load,
-            MachineGroup::Gear(gear) => GROUPS * bearings + loads + gear,
-            MachineGroup::Drive(shaft) => GROUPS * bearings + loads + gears + shaft,
-            MachineGroup::Frame => GROUPS * bearings + loads + gears + self.drives(),
-        })
+        let wanted = self.variables.group(reference, &self.machine)?;
+        self.groups.iter().position(|group| *group == wanted)
     }
 
     /// Scripts that are marked.
     fn played(&self, marks: &[bool]) -> Played {
-        let [bearings, loads, gears] = self.counts();
-        let (of_bearings, rest) = marks.split_at(GROUPS * bearings);
-        let (of_loads, rest) = rest.split_at(loads);
-        let (of_gears, rest) = rest.split_at(gears);
-        let (of_drives, of_frame) = rest.split_at(self.drives());
-        // The frame of every bearing is that of the machine.
-        let of_bearing = |marks| match of_frame.first() {
-            Some(frame) => marked(marks).with(Group::Frame, *frame),
-            None => marked(marks),
+        let mut played = Played {
+            bearings: vec![Groups::default(); self.next.bearings.len()],
+            ..Played::of_bearing(Groups::default())
         };
-        Played {
-            loads: of_loads.to_vec(),
-            gears: of_gears.to_vec(),
-            drives: of_drives.to_vec(),
-            frame: of_frame.first().is_some_and(|frame| *frame),
-            bearings: of_bearings.chunks(GROUPS).map(of_bearing).collect(),
+        for (group, mark) in self.groups.iter().zip(marks) {
+            match *group {
+                MachineGroup::Bearing(index, group) => {
+                    played.bearings[index] = played.bearings[index].with(group, *mark);
+                }
+                MachineGroup::Load(_) => played.loads.push(*mark),
+                MachineGroup::Gear(_) => played.gears.push(*mark),
+                MachineGroup::Drive(_) => played.drives.push(*mark),
+                MachineGroup::Motion(_) => played.motions.push(*mark),
+                MachineGroup::Frame => {
+                    // The frame of every bearing is that of the machine.
+                    played.bearings.iter_mut().for_each(|own| *own = own.with(Group::Frame, *mark));
+                    played.frame = *mark;
+                }
+            }
         }
+        played
     }
 
     /// A quaternion of zeros among these values: an input that nothing is connected to.
@@ -328,11 +326,11 @@ impl Unit {
         })
     }
 
-    /// A race whose prepared pose contradicts its twist, over a step \[s] before now.
+    /// A race whose prepared pose contradicts its twist, or a load whose given motion does, over a step \[s] before now.
     pub fn contradiction(&self, step: f64, played: &[bool]) -> Option<(String, Contradiction)> {
         let tables = self.variables.bearings().zip(self.machine.bearings());
         let mut bearings = tables.zip(&self.next.bearings).zip(played.chunks(GROUPS));
-        bearings.find_map(|((((_, variables), (name, bearing)), next), played)| {
+        let of_race = bearings.find_map(|((((_, variables), (name, bearing)), next), played)| {
             // A script moves on within a step, and its pose and twist agree.
             let scripted = marked(played).contains(Group::Tilts);
             let given = |race: &Race| !scripted && variables.pose_is_given(*race);
@@ -342,6 +340,18 @@ impl Unit {
                 let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
                 Some((format!("the {} race{of}", race.name()), found))
             })
+        });
+        of_race.or_else(|| self.contradicting_motion(step, played))
+    }
+
+    fn contradicting_motion(&self, step: f64, played: &[bool]) -> Option<(String, Contradiction)> {
+        let (before, next) = (self.machine.shaft()?.inputs(), self.next.shaft.as_ref()?);
+        let pairs = before.motions.iter().zip(&next.motions);
+        let mut motions = self.scene.shaft()?.motions().zip(pairs).enumerate();
+        motions.find_map(|(index, ((load, (_, component, _)), (before, next)))| {
+            let script = self.groups.iter().position(|group| *group == MachineGroup::Motion(index))?;
+            let found = Contradiction::of_motion(component > 2, before, next, step)?;
+            (!played[script]).then(|| (format!("load {}", load.name), found))
         })
     }
 

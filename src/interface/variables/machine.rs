@@ -34,6 +34,8 @@ pub enum MachineGroup {
     Gear(usize),
     /// Speed or torque of a shaft, by its index.
     Drive(usize),
+    /// Motion that is given at a named load, by its index.
+    Motion(usize),
     /// Motion of the machine's frame.
     Frame,
     /// A group of inputs of a bearing, by its index.
@@ -110,9 +112,13 @@ impl MachineVariables {
         values
     }
 
-    /// Rates of all rows that inputs were given with; loads and drive have none.
+    /// Rates of all rows that inputs were given with; loads and drives have none.
     pub fn rates(&self, machine: &impl Parts) -> Vec<f64> {
         let mut rates = vec![0.0; self.rows.len()];
+        if let Some(system) = machine.shaft() {
+            let own = self.rows.iter().map_while(shaft_source);
+            rates.iter_mut().zip(own).for_each(|(rate, source)| *rate = source.rate(system.inputs()));
+        }
         for (part, (_, bearing)) in self.bearings.iter().zip(machine.bearings()) {
             let own = part.variables.rates(bearing.inputs());
             rates[part.first..part.first + own.len()].copy_from_slice(&own);
@@ -133,11 +139,12 @@ impl MachineVariables {
         let mut shaft = machine.shaft().map(|system| system.inputs().clone());
         for &reference in &self.inputs {
             if let (Some(source), Some(shaft)) = (shaft_source(&self.rows[reference]), &mut shaft) {
-                if !values[reference].is_finite() {
+                let (value, rate) = (values[reference], rates[reference]);
+                for number in [value, rate].into_iter().filter(|number| !number.is_finite()) {
                     let name = self.rows[reference].name.clone();
-                    return Err(InputError::NotFinite { name, value: values[reference] });
+                    return Err(InputError::NotFinite { name, value: number });
                 }
-                source.set(shaft, values[reference]);
+                source.set(shaft, value, rate);
             }
         }
         let alone = shaft.is_none();
@@ -178,6 +185,7 @@ impl MachineVariables {
             ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(MachineGroup::Load(load)),
             ShaftSource::Gear(index) => Some(MachineGroup::Gear(index)),
             ShaftSource::Drive(shaft) => Some(MachineGroup::Drive(shaft)),
+            ShaftSource::Given(index, _) => Some(MachineGroup::Motion(index)),
             ShaftSource::Frame(..) => Some(MachineGroup::Frame),
             ShaftSource::Number(_)
             | ShaftSource::Whole(..)

@@ -13,7 +13,7 @@ use crate::simulation::system::{
 pub enum ShaftSource {
     /// A component of the force at a named load: which load, which component.
     Force(usize, usize),
-    /// The same of its moment.
+    /// A component of its moment, likewise.
     Moment(usize, usize),
     /// Torque of a gear.
     Gear(usize),
@@ -29,10 +29,21 @@ pub enum ShaftSource {
     Link(usize, LinkQuantity),
     /// A housing as a whole, by its index.
     Housing(usize, fn(&HousingOutputs) -> f64),
-    /// What holds a motion that is given, by its index among all of them.
+    /// Force or moment that holds a motion which is given, by its index among all of them.
     Holding(usize),
+    /// Such a motion or its rate; an input of the rate has the rate of that, too.
+    Given(usize, MotionPart),
     /// Motion of a station.
     Motion(Station, PointQuantity, usize),
+}
+
+/// Part of a motion that is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionPart {
+    /// [m, rad] where it is.
+    Value,
+    /// [m/s, rad/s] its rate.
+    Rate,
 }
 
 /// A quantity of a mesh or of a bearing by its stiffness.
@@ -92,7 +103,7 @@ impl Station {
 }
 
 /// A quantity of a station.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointQuantity {
     /// \[m]
     Displacement,
@@ -100,10 +111,22 @@ pub enum PointQuantity {
     Velocity,
     /// \[rad]
     Tilt,
+    /// [rad/s], where it is given.
+    TiltRate,
 }
 
 impl PointQuantity {
-    const ALL: [Self; 3] = [Self::Displacement, Self::Velocity, Self::Tilt];
+    const ALL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Tilt, Self::TiltRate];
+
+    /// Component of a motion (displacements 0 to 2, rotations 3 to 5) along or about an axis, and whether it is that or its rate.
+    fn of_motion(self, axis: usize) -> (usize, MotionPart) {
+        match self {
+            Self::Displacement => (axis, MotionPart::Value),
+            Self::Velocity => (axis, MotionPart::Rate),
+            Self::Tilt => (3 + axis, MotionPart::Value),
+            Self::TiltRate => (3 + axis, MotionPart::Rate),
+        }
+    }
 
     /// Name, unit, typical size, first component and what it is, of a shaft or a housing.
     fn words(self, of_shaft: bool) -> (&'static str, Unit, f64, usize, &'static str) {
@@ -122,6 +145,16 @@ impl PointQuantity {
                 ("tilt", units::RADIAN, 1e-3, 1, "tilt of the shaft about an axis of its own")
             }
             (Self::Tilt, false) => ("rotation", units::RADIAN, 1e-3, 0, "rotation of the housing"),
+            (Self::TiltRate, true) => (
+                "tilt_rate",
+                units::RADIAN_PER_SECOND,
+                1.0,
+                1,
+                "rate of the tilt of the shaft about an axis of its own",
+            ),
+            (Self::TiltRate, false) => {
+                ("rotation_rate", units::RADIAN_PER_SECOND, 1.0, 0, "rate of the rotation of the housing")
+            }
         }
     }
 
@@ -130,6 +163,8 @@ impl PointQuantity {
             Self::Displacement => point.displacement[axis],
             Self::Velocity => point.velocity[axis],
             Self::Tilt => point.tilt[axis],
+            // It is an input or not there at all.
+            Self::TiltRate => f64::NAN,
         }
     }
 }
@@ -150,12 +185,25 @@ impl ShaftSource {
             Self::Link(index, quantity) => quantity.read(&outputs.links[index]),
             Self::Housing(index, get) => get(&outputs.housings[index]),
             Self::Holding(index) => outputs.holding[index],
+            Self::Given(index, MotionPart::Value) => inputs.motions[index].value,
+            Self::Given(index, MotionPart::Rate) => inputs.motions[index].rate,
             Self::Motion(station, quantity, axis) => quantity.read(station.of(outputs), axis),
         }
     }
 
-    /// Writes a value into inputs; nothing where it is an output.
-    pub fn set(self, inputs: &mut ShaftInputs, value: f64) {
+    /// [unit/s] rate that an input was given with; 0 where it takes none.
+    pub fn rate(self, inputs: &ShaftInputs) -> f64 {
+        match self {
+            Self::Given(index, MotionPart::Rate) => inputs.motions[index].acceleration,
+            Self::Frame(quantity, axis) => {
+                inputs.frame.map_or(0.0, |frame| frame.rate.vector(quantity)[axis])
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Writes a value and its rate [unit, unit/s] into inputs; nothing where it is an output.
+    pub fn set(self, inputs: &mut ShaftInputs, value: f64, rate: f64) {
         match self {
             Self::Force(load, axis) => inputs.loads[load].force[axis] = value,
             Self::Moment(load, axis) => inputs.loads[load].moment[axis] = value,
@@ -164,7 +212,12 @@ impl ShaftSource {
             Self::Frame(quantity, axis) => {
                 if let Some(frame) = &mut inputs.frame {
                     frame.motion.vector_mut(quantity)[axis] = value;
+                    frame.rate.vector_mut(quantity)[axis] = rate;
                 }
+            }
+            Self::Given(index, MotionPart::Value) => inputs.motions[index].value = value,
+            Self::Given(index, MotionPart::Rate) => {
+                (inputs.motions[index].rate, inputs.motions[index].acceleration) = (value, rate);
             }
             Self::Number(_)
             | Self::Whole(..)
@@ -214,14 +267,14 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     let on_shafts = scene.shafts.iter().map(|shaft| shaft.load.len()).sum();
     // An input, or what holds a motion that is given there.
     let mut holding = 0;
-    let mut effort =
-        |load: &NamedLoad<'_>, component: usize, input: ShaftSource| match load.is_given(component) {
-            true => {
-                holding += 1;
-                (Causality::Output, ShaftSource::Holding(holding - 1), ", which holds the given motion there")
-            }
-            false => (Causality::Input, input, ""),
-        };
+    let mut effort = |load: &NamedLoad<'_>, component: usize, input: ShaftSource| match load.gives(component)
+    {
+        true => {
+            holding += 1;
+            (Causality::Output, ShaftSource::Holding(holding - 1), ", which holds the given motion there")
+        }
+        false => (Causality::Input, input, ""),
+    };
     for (index, load) in scene.loads().enumerate() {
         let what = if index < on_shafts { "shaft" } else { "housing" };
         for (axis, letter) in AXES.into_iter().enumerate() {
@@ -267,15 +320,16 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     }
     (0..scene.shafts.len()).for_each(|shaft| turn(scene, shaft, &mut rows));
     for (index, load) in scene.shafts.iter().flat_map(|shaft| &shaft.load).enumerate() {
-        motion(&mut rows, Station::Load(None, index), &quoted(&load.name), &load.name);
+        let given = given(scene, &load.name);
+        motion(&mut rows, Station::Load(None, index), &quoted(&load.name), &load.name, &given);
     }
     for (index, point) in scene.shafts.iter().flat_map(|shaft| &shaft.point).enumerate() {
-        motion(&mut rows, Station::Point(None, index), &quoted(&point.name), &point.name);
+        motion(&mut rows, Station::Point(None, index), &quoted(&point.name), &point.name, &[]);
     }
     for (index, bearing) in scene.bearings.iter().enumerate() {
         let prefix = format!("{}.seat", quoted(&bearing.name));
         let place = format!("the seat of bearing {}", bearing.name);
-        motion(&mut rows, Station::Seat(None, index), &prefix, &place);
+        motion(&mut rows, Station::Seat(None, index), &prefix, &place, &[]);
     }
     for (index, name) in scene.link_names().enumerate() {
         link(&mut rows, (index, index < scene.meshes.len()), name);
@@ -353,15 +407,22 @@ fn housing(scene: &SystemScene, index: usize, rows: &mut Vec<Variable>) {
     energy("to_bearings", "energy given to its bearings since the start,", |o| o.energies.bearings);
     energy("dissipated", "energy lost to the damping since the start,", |o| o.energies.damping);
     for (own, load) in housing.load.iter().enumerate() {
-        motion(rows, Station::Load(Some(index), own), &quoted(&load.name), &load.name);
+        let given = given(scene, &load.name);
+        motion(rows, Station::Load(Some(index), own), &quoted(&load.name), &load.name, &given);
     }
     for (own, point) in housing.point.iter().enumerate() {
-        motion(rows, Station::Point(Some(index), own), &quoted(&point.name), &point.name);
+        motion(rows, Station::Point(Some(index), own), &quoted(&point.name), &point.name, &[]);
     }
     for (own, bearing) in scene.bearings_in(index).enumerate() {
         let bearing = &scene.bearings[bearing].name;
         let prefix = format!("{}.housing", quoted(bearing));
-        motion(rows, Station::Seat(Some(index), own), &prefix, &format!("the seat of bearing {bearing}"));
+        motion(
+            rows,
+            Station::Seat(Some(index), own),
+            &prefix,
+            &format!("the seat of bearing {bearing}"),
+            &[],
+        );
     }
 }
 
@@ -401,15 +462,27 @@ fn turn(scene: &SystemScene, shaft: usize, rows: &mut Vec<Variable>) {
     output("energy.dissipated", joule, lost, |o| o.energies.damping);
 }
 
-/// Motion of a station.
-fn motion(rows: &mut Vec<Variable>, station: Station, prefix: &str, place: &str) {
+/// Components that are given of the motion at a named load, with the index of each among all motions that are given.
+fn given(scene: &SystemScene, name: &str) -> Vec<(usize, usize)> {
+    let all = scene.motions().enumerate().filter(|(_, (load, _))| load.name == name);
+    all.map(|(index, (_, (_, component, _)))| (component, index)).collect()
+}
+
+/// Motion of a station: outputs, and inputs where components of it are given.
+fn motion(rows: &mut Vec<Variable>, station: Station, prefix: &str, place: &str, given: &[(usize, usize)]) {
     for quantity in PointQuantity::ALL {
         let (name, unit, nominal, first, what) = quantity.words(station.housing().is_none());
         for (axis, letter) in AXES.into_iter().enumerate().skip(first) {
             let name = format!("{prefix}.{name}.{letter}");
             let description = format!("{what} at {place}, {letter} component, axes of the shaft");
-            let source = ShaftSource::Motion(station, quantity, axis);
-            rows.push(row(name, (unit, nominal), Causality::Output, description, source));
+            let (component, part) = quantity.of_motion(axis);
+            let input = given.iter().find(|(own, _)| *own == component);
+            let (causality, source) = match input {
+                Some((_, index)) => (Causality::Input, ShaftSource::Given(*index, part)),
+                None if quantity == PointQuantity::TiltRate => continue,
+                None => (Causality::Output, ShaftSource::Motion(station, quantity, axis)),
+            };
+            rows.push(row(name, (unit, nominal), causality, description, source));
         }
     }
 }

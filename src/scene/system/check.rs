@@ -2,11 +2,11 @@
 
 use super::bearing::WrittenBearing;
 use super::ranges::{BORE_OFFSET, BORE_TILT, GIVEN_DISPLACEMENT, GIVEN_ROTATION, INERTIA, MASS, POSITION};
-use super::{MountedScene, Written, check_housing, mesh};
+use super::{MountedScene, NamedLoad, Written, check_housing, mesh};
 use crate::effects::gravity::GRAVITY;
 use crate::schema::numbers::Range;
 use crate::schema::{
-    AxialSeat, Drive, Level, Mounting, PointLoad, SceneError, ShaftSection, StiffnessSection, check_phases,
+    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_phases,
 };
 
 /// Checks every value against its range, and the keys against one another.
@@ -361,15 +361,15 @@ fn keys_of_shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
     }
     for load in &shaft.load {
         POSITION.check("shaft.load.position", load.position.0)?;
-        given_motion(load)?;
+        given_motion(&NamedLoad::of_shaft(load))?;
     }
     sections(shaft)
 }
 
 /// Motions of a named load that are given: within their ranges, without a jump in speed, and not beside a force or a moment of their own.
-fn given_motion(load: &PointLoad) -> Result<(), SceneError> {
+pub(super) fn given_motion(load: &NamedLoad<'_>) -> Result<(), SceneError> {
     for (key, component, motion) in load.motion() {
-        let key = format!("shaft.load \"{}\": {key}", load.name);
+        let key = format!("{load}: {key}");
         let (range, other, effort) = match component {
             0..3 => (GIVEN_DISPLACEMENT, "force", &load.force.0[component]),
             _ => (GIVEN_ROTATION, "moment", &load.moment.0[component - 3]),
@@ -435,7 +435,7 @@ pub fn solvers(bearings: &[MountedScene], shafts: &[ShaftSection]) -> Result<(),
     Ok(())
 }
 
-/// What a bearing has by itself alone.
+/// Keys that a bearing has by itself alone.
 fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
     let (scene, name) = (&bearing.scene, &bearing.name);
     let refuse = |key: &str, why: &str| Err(SceneError::conflict(format!("bearing \"{name}\": {key}"), why));

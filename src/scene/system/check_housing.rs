@@ -1,5 +1,7 @@
 //! Checks of the keys of a housing.
 
+use super::NamedLoad;
+use super::check::given_motion;
 use super::ranges::{INERTIA, MASS, POSITION};
 use crate::schema::numbers::Range;
 use crate::schema::units::{Length, Quantity};
@@ -60,7 +62,10 @@ fn keys(housing: &HousingSection) -> Result<(), SceneError> {
         of_foot("housing.foot.stiffness", STIFFNESS, &foot.stiffness)?;
         foot.damping.iter().try_for_each(|damping| of_foot("housing.foot.damping", DAMPING, damping))?;
     }
-    load.iter().try_for_each(|load| place("housing.load.position", &load.position))?;
+    for load in load {
+        place("housing.load.position", &load.position)?;
+        given_motion(&NamedLoad::of_housing(load))?;
+    }
     point.iter().try_for_each(|point| place("housing.point.position", &point.position))
 }
 

@@ -10,6 +10,7 @@ pub mod mesh;
 mod numbers;
 mod ranges;
 
+use std::fmt;
 use std::path::Path;
 
 use bearing::{Shared, WrittenBearing};
@@ -23,8 +24,9 @@ use super::{FrameMotion, Ranges, Scene, SceneError};
 use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    AxialSeat, Components, GearSection, HousingSection, Matrices, MeshSection, Mounting, PhaseSection,
-    PointLoad, RotatingSection, Schedule, ShaftSection, Shafts, Solver, explain, regular,
+    AxialSeat, Components, GearSection, GivenMotion, HousingLoad, HousingSection, Matrices, MeshSection,
+    Mounting, PhaseSection, PointLoad, RotatingSection, Schedule, ShaftSection, Shafts, Solver, explain,
+    regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -100,19 +102,53 @@ pub struct NamedLoad<'a> {
     pub force: &'a Components<Force>,
     /// [N m] moment.
     pub moment: &'a Components<Moment>,
-    /// The load of a shaft that it is; none of a housing's.
-    of_shaft: Option<&'a PointLoad>,
+    on: On<'a>,
 }
 
-impl NamedLoad<'_> {
-    /// Is a component (displacements 0 to 2, rotations 3 to 5) of the motion there given?
-    pub fn is_given(&self, component: usize) -> bool {
-        self.of_shaft.is_some_and(|load| load.motion().any(|(_, given, _)| given == component))
+/// Part of a machine that a load acts on.
+#[derive(Clone, Copy, Debug)]
+enum On<'a> {
+    Shaft(&'a PointLoad),
+    Housing(&'a HousingLoad),
+}
+
+impl<'a> NamedLoad<'a> {
+    fn of_shaft(load: &'a PointLoad) -> Self {
+        Self { name: &load.name, force: &load.force, moment: &load.moment, on: On::Shaft(load) }
+    }
+
+    fn of_housing(load: &'a HousingLoad) -> Self {
+        Self { name: &load.name, force: &load.force, moment: &load.moment, on: On::Housing(load) }
+    }
+
+    /// Does it give a component (displacements 0 to 2, rotations 3 to 5) of the motion there?
+    pub fn gives(&self, component: usize) -> bool {
+        self.motion().any(|(_, given, _)| given == component)
+    }
+
+    /// Components of the motion there that are given.
+    pub fn motion(&self) -> impl Iterator<Item = GivenMotion<'a>> + use<'a> {
+        let (shaft, housing) = match self.on {
+            On::Shaft(load) => (Some(load), None),
+            On::Housing(load) => (None, Some(load)),
+        };
+        let of_shaft = shaft.into_iter().flat_map(PointLoad::motion);
+        of_shaft.chain(housing.into_iter().flat_map(HousingLoad::motion))
     }
 
     /// Does a table give something of it?
     pub fn is_scripted(&self) -> bool {
         self.force.is_scripted() || self.moment.is_scripted()
+    }
+}
+
+impl fmt::Display for NamedLoad<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let section = match self.on {
+            On::Shaft(_) => "shaft.load",
+            On::Housing(_) => "housing.load",
+        };
+        write!(f, "{section} \"{}\"", self.name)
     }
 }
 
@@ -303,18 +339,8 @@ impl SystemScene {
 
     /// Named loads of the shafts, then those of every housing.
     pub fn loads(&self) -> impl Iterator<Item = NamedLoad<'_>> {
-        let shafts = self.shafts.iter().flat_map(|shaft| &shaft.load).map(|load| NamedLoad {
-            name: &load.name,
-            force: &load.force,
-            moment: &load.moment,
-            of_shaft: Some(load),
-        });
-        let housings = self.housings.iter().flat_map(|housing| &housing.load).map(|load| NamedLoad {
-            name: &load.name,
-            force: &load.force,
-            moment: &load.moment,
-            of_shaft: None,
-        });
+        let shafts = self.shafts.iter().flat_map(|shaft| &shaft.load).map(NamedLoad::of_shaft);
+        let housings = self.housings.iter().flat_map(|housing| &housing.load).map(NamedLoad::of_housing);
         shafts.chain(housings)
     }
 
@@ -331,13 +357,18 @@ impl SystemScene {
         self.shafts.iter().flat_map(|shaft| &shaft.gear)
     }
 
-    /// Components of the motion of named loads of a shaft that are given: which of its loads, its key, which component (displacements 0 to 2,
-    /// rotations 3 to 5), and over time.
-    pub fn held(&self, shaft: usize) -> impl Iterator<Item = (usize, &'static str, usize, &Schedule)> {
-        let loads = self.shafts[shaft].load.iter().enumerate();
-        loads.flat_map(|(load, own)| {
-            own.motion().map(move |(key, component, given)| (load, key, component, given))
-        })
+    /// Motions that are given at named loads, with the load of each, in the order of [`SystemScene::loads`].
+    pub fn motions(&self) -> impl Iterator<Item = (NamedLoad<'_>, GivenMotion<'_>)> {
+        self.loads().flat_map(|load| load.motion().map(move |given| (load, given)))
+    }
+
+    /// Motions that are given at named loads of a structure (shafts, then housings), with the index of the load among those of the structure.
+    pub fn held(&self, structure: usize) -> impl Iterator<Item = (usize, GivenMotion<'_>)> {
+        let shaft = self.shafts.get(structure).into_iter().flat_map(|shaft| shaft.load.iter().enumerate());
+        let housing = structure.checked_sub(self.shafts.len()).and_then(|index| self.housings.get(index));
+        let housing = housing.into_iter().flat_map(|housing| housing.load.iter().enumerate());
+        let of_shaft = shaft.flat_map(|(own, load)| load.motion().map(move |given| (own, given)));
+        of_shaft.chain(housing.flat_map(|(own, load)| load.motion().map(move |given| (own, given))))
     }
 
     /// Forces that turn of the first shaft, then of the next.
@@ -375,7 +406,7 @@ impl SystemScene {
         let oils = self.bearings.iter().filter_map(|mounted| mounted.scene.effects.film.schedule());
         let frame = self.frame.iter().flat_map(FrameSection::schedules).chain(&self.gravity.0);
         let rotating = self.rotating().flat_map(RotatingSection::schedules);
-        let held = (0..self.shafts.len()).flat_map(|shaft| self.held(shaft)).map(|(.., schedule)| schedule);
+        let held = self.motions().map(|(_, (.., schedule))| schedule);
         loads.chain(held).chain(drive).chain(gears).chain(rotating).chain(frictions).chain(oils).chain(frame)
     }
 

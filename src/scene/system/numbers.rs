@@ -141,7 +141,7 @@ static NUMBERS: [ShaftNumber; 24] = [
 /// A number of a part.
 #[derive(Clone, Copy, Debug)]
 pub struct ShaftParameter {
-    /// What it is.
+    /// Row of its kind: name, unit, range.
     pub number: &'static ShaftNumber,
     part: usize,
     /// Its value in the scene.

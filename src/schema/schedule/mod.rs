@@ -66,11 +66,14 @@ impl Schedule {
         }
     }
 
-    /// Rate of change of that rate.
+    /// Rate of change of that rate just before a time \[s]: at a point of a table it jumps.
     pub fn smooth_acceleration(&self, time: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
-            Self::Table(points) => smooth(points, time).map_or(0.0, |[_, _, acceleration]| acceleration),
+            Self::Table(points) => {
+                let next = points.partition_point(|&(t, _)| t < time);
+                piece(points, next, time).map_or(0.0, |[_, _, acceleration]| acceleration)
+            }
             Self::Sine(sine) => sine.acceleration(time),
             Self::Sum(parts) => parts.iter().map(|part| part.smooth_acceleration(time)).sum(),
         }
@@ -239,7 +242,11 @@ fn sum_values(parts: &[(f64, &Schedule)]) -> Vec<f64> {
 
 /// Value, rate and acceleration of a smooth motion through points between their ends.
 fn smooth(points: &[(f64, f64)], time: f64) -> Option<[f64; 3]> {
-    let next = points.partition_point(|&(t, _)| t <= time);
+    piece(points, points.partition_point(|&(t, _)| t <= time), time)
+}
+
+/// Those of the piece that ends at a point.
+fn piece(points: &[(f64, f64)], next: usize, time: f64) -> Option<[f64; 3]> {
     let (&(t1, v1), &(t0, v0)) = (points.get(next)?, points.get(next.wrapping_sub(1))?);
     // Harmonic mean of the secants on both sides; 0 at extrema and at the ends.
     let slope = |i: usize| -> f64 {

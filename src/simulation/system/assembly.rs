@@ -11,7 +11,9 @@ use super::super::{Simulation, SimulationError};
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
 use super::start::found_out;
 use super::statics::Statics;
-use super::{System, SystemError, first_stations, links, loads, places_of_housing, stations};
+use super::{
+    System, SystemError, first_stations, housing_stations, links, loads, places_of_housing, stations,
+};
 use crate::dynamics::system::{Joint, Seat, StructureLoad};
 use crate::equilibrium::{self, EquilibriumInput, Gyroscopic, Prescribed};
 use crate::model::Model;
@@ -24,13 +26,13 @@ use crate::numerics::tilt;
 use crate::scene::Scene;
 use crate::scene::system::mesh::{InTrain, trains};
 use crate::scene::system::{MountedScene, SystemScene};
-use crate::schema::{Schedule, ShaftSection};
+use crate::schema::ShaftSection;
 
 /// The parts of a system at a time.
 pub(super) struct Assembly {
     time: f64,
     pub carriers: Vec<Carrier>,
-    /// Of each structure.
+    /// Scales of the equations of each structure.
     pub scales: Vec<DVector<f64>>,
     /// External loads on each.
     pub loads: Vec<StructureLoad>,
@@ -252,24 +254,40 @@ fn carriers(scene: &SystemScene) -> Result<Vec<Carrier>, SystemError> {
     let named = |name: String| move |why| SystemError::Structure { name, why };
     let shafts = scene.shafts.iter().enumerate().map(|(index, shaft)| {
         let name = if scene.shafts.len() == 1 { "shaft".into() } else { format!("shaft \"{}\"", shaft.name) };
-        let carrier = Carrier::of_shaft(shaft, &stations(scene, index), scene.twists(index)).map_err(named(name.clone()))?;
+        let carrier = Carrier::of_shaft(shaft, &stations(scene, index), scene.twists(index))
+            .map_err(named(name.clone()))?;
         let [first, ..] = first_stations(scene, index);
-        let held: Vec<_> = scene.held(index).map(|(load, _, component, _)| (first + load, component)).collect();
-        carrier.holding(&held).map_err(|which| {
-            let (load, key, ..) = scene.held(index).nth(which).unwrap_or((0, "", 0, &Schedule::Constant(0.0)));
-            let name_of_load = &shaft.load[load].name;
-            let why = format!("shaft.load \"{name_of_load}\": {key} follows from the motions that are given before it: take it out");
-            SystemError::Structure { name, why }
-        })
+        holding(scene, (index, first), carrier, name)
     });
     let housings = scene.housings.iter().enumerate().map(|(index, housing)| {
         let name = format!("housing \"{}\"", housing.name);
-        let carrier = Carrier::of_housing(housing, &places_of_housing(scene, index)).map_err(named(name))?;
-        Ok(carrier.with_rings(&sliding(scene, scene.bearings_in(index))))
+        let carrier =
+            Carrier::of_housing(housing, &places_of_housing(scene, index)).map_err(named(name.clone()))?;
+        let carrier = carrier.with_rings(&sliding(scene, scene.bearings_in(index)));
+        let [first, _] = housing_stations(scene, index);
+        holding(scene, (scene.shafts.len() + index, first), carrier, name)
     });
     let bores = scene.bearings_in_ground().count();
     let ground = || Ok(Carrier::of_ground(bores).with_rings(&sliding(scene, scene.bearings_in_ground())));
     shafts.chain(housings).chain((bores > 0).then(ground)).collect()
+}
+
+/// A structure with the motions that are given at its named loads, the first of which is at this station.
+fn holding(
+    scene: &SystemScene,
+    (structure, first): (usize, usize),
+    carrier: Carrier,
+    name: String,
+) -> Result<Carrier, SystemError> {
+    let held: Vec<_> =
+        scene.held(structure).map(|(own, (_, component, _))| (first + own, component)).collect();
+    carrier.holding(&held).map_err(|which| {
+        let before: usize = (0..structure).map(|one| scene.held(one).count()).sum();
+        let given = scene.motions().nth(before + which);
+        let key = given.map_or(String::new(), |(load, (key, ..))| format!("{load}: {key}"));
+        let why = format!("{key} follows from the motions that are given before it: take it out");
+        SystemError::Structure { name, why }
+    })
 }
 
 /// Rings that slide, of the bearings at the first stations of a structure.

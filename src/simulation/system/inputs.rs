@@ -4,14 +4,14 @@ use nalgebra::{SVector, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::super::input_paths::FramePath;
-use super::super::path::Ramp;
+use super::super::path::{Motion, MotionPath, Ramp};
 use crate::effects::moving_frame::{FrameInputs, FrameMotion, MovingFrame};
 use crate::model::state::stack;
 use crate::model::structure::Spin;
 use crate::numerics::motion::Wrench;
 use crate::scene::system::{NamedLoad, SystemScene};
 use crate::scene::{Groups, Schedule};
-use crate::schema::ShaftSection;
+use crate::schema::{GivenMotion, ShaftSection};
 
 /// Inputs of shafts and housings, valid at the last communication point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +22,8 @@ pub struct ShaftInputs {
     pub gears: Vec<f64>,
     /// Speed [rad/s] or torque [N m] of every shaft, whichever the scene drives it by.
     pub drives: Vec<f64>,
+    /// Motions that are given at named loads, in the order of [`SystemScene::motions`].
+    pub motions: Vec<Motion>,
     /// Motion of the machine's frame, and gravity in it, where that may move.
     pub frame: Option<FrameInputs>,
 }
@@ -39,7 +41,8 @@ impl ShaftInputs {
             rate: FrameMotion::default(),
             accelerates: section.angular_acceleration.is_some(),
         });
-        Self { loads: scene.loads().map(wrench).collect(), gears, drives, frame }
+        let motions = scene.motions().map(|(_, given)| motion_at(given, time)).collect();
+        Self { loads: scene.loads().map(wrench).collect(), gears, drives, motions, frame }
     }
 
     /// Are these those of the same system?
@@ -47,6 +50,7 @@ impl ShaftInputs {
         self.loads.len() == other.loads.len()
             && self.gears.len() == other.gears.len()
             && self.drives.len() == other.drives.len()
+            && self.motions.len() == other.motions.len()
             && self.frame.is_some() == other.frame.is_some()
     }
 
@@ -64,6 +68,8 @@ pub struct Played {
     pub gears: Vec<bool>,
     /// Speed or torque of every shaft.
     pub drives: Vec<bool>,
+    /// Motions that are given at named loads.
+    pub motions: Vec<bool>,
     /// Motion of the machine's frame.
     pub frame: bool,
     /// Groups of inputs of every bearing.
@@ -73,7 +79,14 @@ pub struct Played {
 impl Played {
     /// Scripts of a bearing alone.
     pub fn of_bearing(groups: Groups) -> Self {
-        Self { loads: vec![], gears: vec![], drives: vec![], frame: false, bearings: vec![groups] }
+        Self {
+            loads: vec![],
+            gears: vec![],
+            drives: vec![],
+            motions: vec![],
+            frame: false,
+            bearings: vec![groups],
+        }
     }
 
     /// No script.
@@ -82,6 +95,7 @@ impl Played {
             loads: vec![false; scene.loads().count()],
             gears: vec![false; scene.gears().count()],
             drives: vec![false; scene.shafts.len()],
+            motions: vec![false; scene.motions().count()],
             frame: false,
             bearings: vec![Groups::default(); scene.bearings.len()],
         }
@@ -93,6 +107,7 @@ impl Played {
             loads: vec![true; scene.loads().count()],
             gears: vec![true; scene.gears().count()],
             drives: vec![true; scene.shafts.len()],
+            motions: vec![true; scene.motions().count()],
             frame: true,
             bearings: vec![Groups::ALL; scene.bearings.len()],
         }
@@ -107,6 +122,12 @@ fn drive_of(shaft: &ShaftSection) -> Option<&Schedule> {
 /// Does a table give the speed or the torque of a shaft?
 pub fn drive_is_scripted(shaft: &ShaftSection) -> bool {
     drive_of(shaft).is_some_and(Schedule::is_scripted)
+}
+
+/// Motion that the scene gives, at a time \[s].
+fn motion_at((.., schedule): GivenMotion<'_>, time: f64) -> Motion {
+    let (value, rate) = schedule.smooth_at(time);
+    Motion { value, rate, acceleration: schedule.smooth_acceleration(time) }
 }
 
 /// Turn at a time \[s] of a shaft whose speed the scene gives.
@@ -168,6 +189,8 @@ pub struct ShaftPaths {
     torques: Vec<Ramp<1>>,
     /// Speed of every shaft, where that is given.
     turns: Vec<TurnPath>,
+    /// Motions that are given at named loads.
+    motions: Vec<MotionPath>,
     /// Motion of the machine's frame, where that may move.
     frame: Option<FramePath>,
 }
@@ -190,6 +213,7 @@ impl ShaftPaths {
             gears: inputs.gears.iter().map(|torque| Ramp::constant(SVector::from([*torque]))).collect(),
             torques: inputs.drives.iter().map(|drive| Ramp::constant(SVector::from([*drive]))).collect(),
             turns: turns.map(|(angle, drive)| TurnPath::steady(time, *angle, *drive)).collect(),
+            motions: inputs.motions.iter().map(|motion| MotionPath::steady(time, motion)).collect(),
             frame: inputs.frame.as_ref().map(FramePath::steady),
         }
     }
@@ -200,11 +224,13 @@ impl ShaftPaths {
         let gears = self.gears.iter().zip(&inputs.gears);
         let torques = self.torques.iter().zip(&inputs.drives);
         let turns = self.turns.iter().zip(&inputs.drives);
+        let motions = self.motions.iter().zip(&inputs.motions);
         Self {
             loads: loads.map(|(now, next)| now.towards(time, next, duration)).collect(),
             gears: gears.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
             torques: torques.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
             turns: turns.map(|(now, next)| now.towards(time, *next, duration)).collect(),
+            motions: motions.map(|(now, next)| now.towards(time, next, duration)).collect(),
             frame: self.frame.zip(inputs.frame).map(|(now, next)| now.towards(time, &next, duration)),
         }
     }
@@ -219,6 +245,7 @@ impl ShaftPaths {
         self.loads.len() == inputs.loads.len()
             && self.gears.len() == inputs.gears.len()
             && [self.torques.len(), self.turns.len()] == [inputs.drives.len(); 2]
+            && self.motions.len() == inputs.motions.len()
             && self.frame.is_some() == inputs.frame.is_some()
     }
 }
@@ -267,6 +294,14 @@ impl Given<'_> {
         }
     }
 
+    /// Motion that is given at a named load, at a time \[s].
+    pub fn motion(&self, index: usize, time: f64) -> Motion {
+        match self.scene.motions().nth(index) {
+            Some((_, given)) if self.plays_motion(index) => motion_at(given, time),
+            _ => self.paths.motions[index].at(time),
+        }
+    }
+
     /// Field of gravity and of the motion of the frame at a time \[s].
     pub fn field(&self, time: f64) -> Field {
         let motion = match &self.paths.frame {
@@ -303,6 +338,12 @@ impl Given<'_> {
         self.played.drives[shaft] && drive_is_scripted(&self.scene.shafts[shaft])
     }
 
+    /// Is a given motion that of its table?
+    pub fn plays_motion(&self, index: usize) -> bool {
+        let scripted = |(_, (.., schedule)): (NamedLoad<'_>, GivenMotion<'_>)| schedule.is_scripted();
+        self.played.motions[index] && self.scene.motions().nth(index).is_some_and(scripted)
+    }
+
     /// Inputs and paths where a step ended that led to a time \[s]: those that scripts gave are where these are, and stay so.
     pub fn reached(&self, inputs: &ShaftInputs, time: f64) -> (ShaftInputs, ShaftPaths) {
         let (mut inputs, mut paths) = (inputs.clone(), self.paths.clone());
@@ -324,6 +365,12 @@ impl Given<'_> {
             inputs.drives[shaft] = drive;
             paths.torques[shaft] = Ramp::constant(SVector::from([drive]));
             paths.turns[shaft] = TurnPath::steady(time, self.spin(shaft, time).angle, drive);
+        }
+        for (index, path) in paths.motions.iter_mut().enumerate() {
+            if self.plays_motion(index) {
+                inputs.motions[index] = scripted.motions[index];
+                *path = MotionPath::steady(time, &scripted.motions[index]);
+            }
         }
         if self.plays_frame() {
             inputs.frame = scripted.frame;

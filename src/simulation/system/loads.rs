@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Vector3, Vector6};
 
+use super::super::path::Motion;
 use super::inputs::{Field, Given, Played, ShaftInputs, ShaftPaths};
 use super::{first_stations, housing_stations};
 use crate::dynamics::system::StructureLoad;
@@ -27,16 +28,17 @@ pub fn at(
     let scene = given.scene;
     let count = scene.shafts.len();
     let Field { acceleration, turning } = given.field(time);
-    // Loads and gears of shafts that went before.
-    let mut before = [0; 2];
+    // Loads, gears and given motions of structures that went before.
+    let mut before = [0; 3];
     let of_shafts = carriers.iter().zip(states).take(count).enumerate().map(|(shaft, (carrier, state))| {
         let load = on_shaft(given, (shaft, before), (carrier, state), acceleration, [from, time]);
         before[0] += scene.shafts[shaft].load.len();
         before[1] += scene.shafts[shaft].gear.len();
+        before[2] += load.held.len();
         load
     });
     let of_shafts: Vec<_> = of_shafts.collect();
-    let mut first = before[0];
+    let [mut first, _, mut first_motion] = before;
     let housings = given.scene.housings.iter().zip(&carriers[count..]).enumerate();
     let of_housings = housings.map(|(index, (housing, carrier))| {
         let mut force = carrier.structure.weight(&acceleration);
@@ -45,7 +47,9 @@ pub fn at(
             force += carrier.stations[loads + own].tr_mul(&given.load(first + own, time));
         }
         first += housing.load.len();
-        StructureLoad { force, spin: Spin::default(), axial_moment: 0.0, frame: None, held: vec![] }
+        let held = held(given, (count + index, first_motion), time);
+        first_motion += held.len();
+        StructureLoad { force, spin: Spin::default(), axial_moment: 0.0, frame: None, held }
     });
     let ground = carriers.get(scene.housings.len() + count).map(|ground| StructureLoad {
         force: ground.structure.weight(&acceleration),
@@ -58,10 +62,17 @@ pub fn at(
     all.map(|load| StructureLoad { frame: turning, ..load }).collect()
 }
 
-/// Loads of a shaft, with the loads and gears of shafts that go before it.
+/// Motions that are given of a structure, of which those of others go before.
+fn held(given: &Given<'_>, (structure, first): (usize, usize), time: f64) -> Vec<[f64; 3]> {
+    let motions = given.scene.held(structure).enumerate();
+    let motions = motions.map(|(index, _)| given.motion(first + index, time));
+    motions.map(|Motion { value, rate, acceleration }| [value, rate, acceleration]).collect()
+}
+
+/// Loads of a shaft, with the loads, gears and given motions of shafts that go before it.
 fn on_shaft(
     given: &Given<'_>,
-    (shaft, [first_load, first_gear]): (usize, [usize; 2]),
+    (shaft, [first_load, first_gear, first_motion]): (usize, [usize; 3]),
     (carrier, state): (&Carrier, &StructureState),
     acceleration: Vector3<f64>,
     [from, time]: [f64; 2],
@@ -104,11 +115,7 @@ fn on_shaft(
         let last = force.len() - 1;
         force[last] += given.torque(shaft, time);
     }
-    let motions = scene.held(shaft).map(|(.., schedule)| {
-        let (value, rate) = schedule.smooth_at(time);
-        [value, rate, schedule.smooth_acceleration(time)]
-    });
-    StructureLoad { force, spin, axial_moment, frame: None, held: motions.collect() }
+    StructureLoad { force, spin, axial_moment, frame: None, held: held(given, (shaft, first_motion), time) }
 }
 
 /// A turn that goes on as it is.
@@ -117,8 +124,7 @@ fn ahead(spin: &Spin, duration: f64) -> Spin {
     Spin { angle: spin.angle + 0.5 * (spin.speed + speed) * duration, speed, ..*spin }
 }
 
-/// Schedules of named loads, drives, the frame and gravity that are played; those of forces that turn and of given motions
-/// always are.
+/// Schedules of named loads, drives, given motions, the frame and gravity that are played; those of forces that turn always are.
 fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let scene = given.scene;
     let played = given.scene.loads().enumerate().filter(|(index, _)| given.plays_load(*index));
@@ -129,7 +135,8 @@ fn schedules<'a>(given: &Given<'a>) -> Vec<&'a Schedule> {
     let frame = scene.frame.iter().filter(|_| given.plays_frame()).flat_map(FrameSection::schedules);
     let gravity = scene.gravity.0.iter().filter(|_| scene.frame.is_none() || given.plays_frame());
     let rotating = scene.rotating().flat_map(RotatingSection::schedules);
-    let held = (0..scene.shafts.len()).flat_map(|shaft| scene.held(shaft)).map(|(.., schedule)| schedule);
+    let held = scene.motions().enumerate().filter(|(index, _)| given.plays_motion(*index));
+    let held = held.map(|(_, (_, (.., schedule)))| schedule);
     let loads = components.chain(gears.map(|(_, gear)| &gear.torque)).chain(rotating);
     loads.chain(held).chain(drive).chain(frame).chain(gravity).collect()
 }

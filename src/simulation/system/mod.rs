@@ -22,6 +22,7 @@ use thiserror::Error;
 
 use super::cage_push::CagePush;
 use super::inputs::Inputs;
+pub use super::path::Motion;
 use super::{Simulation, SimulationError, follows_time};
 use crate::effects::frame::FrameSection;
 use crate::model::structure::{Carrier, StructureState};
@@ -189,7 +190,7 @@ pub fn shaft_follows_time(scene: &SystemScene) -> bool {
         || scene.gears().any(|gear| gear.torque.is_scripted())
         || scene.rotating().any(|part| part.force.is_some() || part.speed.is_some())
         || scene.gravity.is_scripted()
-        || (0..scene.shafts.len()).any(|shaft| scene.held(shaft).any(|(.., given)| given.is_scripted()))
+        || scene.motions().any(|(_, (.., schedule))| schedule.is_scripted())
         || scene.frame.as_ref().is_some_and(FrameSection::is_scripted)
         || scene.bearings.iter().any(|bearing| follows_time(&bearing.scene))
 }

@@ -100,7 +100,7 @@ pub struct SystemOutputs {
     pub loads: Vec<PointOutput>,
     /// Motion at every named point, likewise.
     pub points: Vec<PointOutput>,
-    /// \[N, N m] what holds each motion that is given, in the order of [`SystemScene::held`] of the shafts: force and moment on the shaft.
+    /// \[N, N m] what holds each motion that is given, in the order of [`SystemScene::motions`]: force and moment on the shaft or the housing.
     pub holding: Vec<f64>,
     /// Outputs of meshes, then of bearings by their stiffness, in the order of the scene.
     pub links: Vec<LinkOutputs>,
@@ -168,7 +168,7 @@ impl SystemOutputs {
             seats: seats.collect(),
             loads: each(|[loads, points, ..]| loads..points),
             points: each(|[_, points, discs, ..]| points..discs),
-            holding: states.iter().take(count).flat_map(|state| state.holding.iter().copied()).collect(),
+            holding: states.iter().flat_map(|state| state.holding.iter().copied()).collect(),
             links: vec![],
             housings: housings.collect(),
             ground: states
