@@ -225,7 +225,7 @@ impl RollingContact {
         RollingForces { id: self.id.clone(), fx, fy, mz, power, stick: None }
     }
 
-    /// What its field follows from ([`FieldCause::field`]), at a rolling speed of 1 m/s: slip is that over the rolling speed.
+    /// Cause of its field ([`FieldCause::field`]), at a rolling speed of 1 m/s: slip is that over the rolling speed.
     ///
     /// # Errors
     /// If a number is out of range.

@@ -51,7 +51,7 @@ pub struct Apart<S: Scalar> {
     rate: S,
     /// Share of the force at the start in that of the step, and what the last step left \[N].
     held: S,
-    owed: S,
+    remainder: S,
     turn: Turn,
 }
 
@@ -123,7 +123,10 @@ impl<S: Scalar> Apart<S> {
             rate: rate + acceleration.scale((1.0 - step.gamma) * h),
             held: radial(component(|ball| ball.total.force.y), component(|ball| ball.total.force.z))
                 .scale(step.alpha_f),
-            owed: radial(component(|ball| ball.remainder.force.y), component(|ball| ball.remainder.force.z)),
+            remainder: radial(
+                component(|ball| ball.remainder.force.y),
+                component(|ball| ball.remainder.force.z),
+            ),
             turn,
         }
     }
@@ -169,7 +172,8 @@ impl<S: Scalar> Apart<S> {
         let outward = outward + radius.scale(mass * speed * speed);
         let forward = forward - rate.scale(2.0 * mass * speed);
         let [acceleration, idle] = along(*ahead, unknowns[1], unknowns[2]);
-        let left = acceleration.scale(*mass) - (outward.scale(1.0 - step.alpha_f) + self.held) + self.owed;
+        let left =
+            acceleration.scale(*mass) - (outward.scale(1.0 - step.alpha_f) + self.held) + self.remainder;
         let idle = idle.scale(*mass);
         (total.force.y, total.force.z) = (outward * c, outward * s);
         (remainder.force.y, remainder.force.z) = (left * c, left * s);
@@ -207,7 +211,7 @@ impl Apart<Lanes> {
             way: one(self.way),
             rate: one(self.rate),
             held: one(self.held),
-            owed: one(self.owed),
+            remainder: one(self.remainder),
             turn: self.turn,
         }
     }

@@ -16,7 +16,7 @@ use crate::model::state::BodyState;
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::{Scalar, constant_vector, cross};
 
-/// What an unbalance [kg m] does to its body, whose origin has this acceleration less that of gravity [m/s2]: force (spatial) and moment
+/// Force of an unbalance [kg m] on its body, whose origin has this acceleration less that of gravity [m/s2]: force (spatial) and moment
 /// (material).
 #[cold]
 pub(super) fn of_unbalance<S: Scalar>(

@@ -13,7 +13,7 @@ keys! {
     "auto" => on: bool = false,
     /// [-] share above which an effect matters; also for estimates that switch nothing.
     "auto_threshold" => given_threshold: Option<f64> = None,
-    /// What was found out, a sentence each, where it is done: the program writes it.
+    /// Findings, a sentence each, where it is done: the program writes it.
     "auto_found" => found: Vec<String> = vec![],
     ;
     /// Keys of `[effects]` that the scene has: they stay as they are.

@@ -78,7 +78,7 @@ pub struct CageSection {
     pub unbalance: Option<Unbalance>,
     /// \[m] diametral clearance of a ball in its pocket.
     pub pocket_clearance: Length,
-    /// What guides the cage.
+    /// Guide of the cage: a race or the balls.
     pub guided_by: Guidance,
     /// \[m] diametral clearance of the cage on the lands of the race that guides it.
     pub guidance_clearance: Option<Length>,
@@ -95,7 +95,7 @@ pub struct CageSection {
 }
 
 keys! {
-    /// What keeps the balls apart: `true` is the cage of `[cage]`, `"ideal"` one without mass, play and friction, `false` or `"none"` nothing.
+    /// Means by which balls are kept apart: `true` is the cage of `[cage]`, `"ideal"` one without mass, play and friction, `false` or `"none"` nothing.
     "cage" => kind: CageKind = CageKind::None,
     ;
     /// The section `[cage]`: there with the effect only.

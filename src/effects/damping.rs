@@ -129,7 +129,7 @@ impl<'de> Deserialize<'de> for Given {
 }
 
 keys! {
-    /// What is given: a factor [s/m], `{ restitution, at, law }` or `{ retardation_time }`.
+    /// Damping as it is given: a factor [s/m], `{ restitution, at, law }` or `{ retardation_time }`.
     "damping" => given: Given = Given::Factor(DissipationFactor(0.0)),
 }
 

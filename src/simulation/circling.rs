@@ -48,7 +48,7 @@ pub struct Exciting {
 }
 
 impl Exciting {
-    /// Of the shafts of a scene.
+    /// Excitation of the shafts of a scene.
     pub fn of(scene: &SystemScene) -> Self {
         let loads = scene.loads().flat_map(|load| load.force.0.iter().chain(&load.moment.0));
         let mut shafts = scene.shafts.iter();
@@ -92,7 +92,7 @@ fn is_free(moved: &RigidBody) -> bool {
 }
 
 impl Place {
-    /// Of a bearing now; none of a race that is held across its axis, or rests on a support.
+    /// Place of a bearing now; none of a race that is held across its axis, or rests on a support.
     pub fn of(simulation: &Simulation) -> Option<Self> {
         let race = watched(simulation);
         let model = simulation.model();
@@ -128,7 +128,7 @@ pub struct Unexplained {
 }
 
 impl Unexplained {
-    /// Of places in the order of time, which lose what is explained. Nothing is known of a shaft whose loads change or swing.
+    /// Motion of places in the order of time, which lose what is explained. Nothing is known of a shaft whose loads change or swing.
     pub fn of(places: &mut [Place], simulation: &Simulation, exciting: Exciting) -> Option<Self> {
         if simulation.model().is_carried(watched(simulation)) {
             if exciting.scripted || exciting.swings {

@@ -64,7 +64,7 @@ pub struct CageInstant {
 }
 
 impl Instant {
-    /// Of a state whose contacts were evaluated.
+    /// Instant of a state whose contacts were evaluated.
     pub(super) fn of(model: &Model, state: &State, contacts: &Contacts, conditions: &Conditions) -> Self {
         let races = PerRace::new(|race| state.race(race).motion());
         let count = state.balls.len() as f64;

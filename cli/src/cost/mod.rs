@@ -107,7 +107,7 @@ pub struct SceneStudy {
     pub settled: Vec<String>,
     /// Advice, a sentence for each quantity that is asked for.
     pub advice: Vec<String>,
-    /// What steps where nothing is said, and those of the scene, cost beside the cheapest tolerance that keeps their promise, or why that
+    /// Regret of steps where nothing is said, and of those of the scene, beside the cheapest tolerance that keeps their promise, or why that
     /// is not known; none if it was not asked for.
     pub regret: Option<Result<Regret, String>>,
 }

@@ -11,7 +11,7 @@ use super::{Choice, StudyError};
 
 /// A run to be done.
 pub struct Job<'a> {
-    /// What the progress says.
+    /// Text of the progress.
     pub what: String,
     /// Setting.
     pub setting: &'a Setting,

@@ -1,4 +1,4 @@
-//! What steps cost beside the cheapest tolerance that keeps the promise of steps where nothing is said: means within 1 %, histories but
+//! Cost of steps beside the cheapest tolerance that keeps the promise of steps where nothing is said: means within 1 %, histories but
 //! that of the torque within 2 %.
 //!
 //! Costs are contact evaluations, which repeat to the last one. The tolerances are tried alone, with all motion followed; all are
@@ -66,11 +66,11 @@ pub struct Tried {
     pub label: String,
     /// [-] their tolerance.
     pub tolerance: f64,
-    /// What came of them, or why nothing did.
+    /// Outcome of them, or why there is none.
     pub result: Result<Judged, String>,
 }
 
-/// What steps of a scene cost beside the cheapest tolerance that keeps the promise.
+/// Cost of the steps of a scene beside the cheapest tolerance that keeps the promise.
 #[derive(Clone, Debug)]
 pub struct Regret {
     /// Steps where nothing is said, then those of the scene if it says some: labels of the lever `default`.
@@ -149,7 +149,7 @@ fn with_tolerance(scene: &MachineScene, factor: f64) -> MachineScene {
     })
 }
 
-/// What steps where nothing is said, and those of the scene, cost beside the cheapest tolerance that keeps the promise.
+/// Cost of steps where nothing is said, and of those of the scene, beside the cheapest tolerance that keeps the promise.
 ///
 /// # Errors
 /// If there is no reference, or it was interrupted.

@@ -14,7 +14,7 @@ const PANEL: (u32, u32) = (560, 320);
 
 /// A curve of one load, or of one load and speed.
 pub struct Curve {
-    /// What it is of.
+    /// Contact that it is of.
     pub name: String,
     /// Its points.
     pub points: Vec<FilmPoint>,

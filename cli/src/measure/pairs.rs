@@ -92,7 +92,7 @@ impl Pairs {
     }
 }
 
-/// What twins may know of every bearing.
+/// Estimates of every bearing, which its twins are made by.
 fn estimates(scene: &MachineScene) -> Result<Vec<Estimate>, EstimateError> {
     match scene {
         MachineScene::Bearing(scene) => Ok(vec![estimate::of(scene, &Model::new(scene)?)?]),

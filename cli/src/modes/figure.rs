@@ -108,7 +108,7 @@ fn growths(area: &Area<'_>, modes: &Modes, marks: &[Mark]) -> Drawn {
     growth_chart(&rest, &[(BLACK, fastest_growing(modes, marks))])
 }
 
-/// What grows fastest at each speed, or decays slowest.
+/// Motion that grows fastest at each speed, or decays slowest.
 fn fastest_growing(modes: &Modes, marks: &[Mark]) -> Vec<Mark> {
     let of_speed = |row: &Row| {
         let own = marks.iter().filter(|mark| mark.speed == rpm(row.speed));

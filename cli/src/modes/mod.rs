@@ -65,7 +65,7 @@ pub struct Modes {
     pub rows: Vec<Row>,
 }
 
-/// What is asked for.
+/// Request.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
     /// \[s] time of the scene's script.
@@ -125,13 +125,13 @@ pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
     Some(motions)
 }
 
-/// What grows where the script of a scene is at a time \[s], in a sentence: what whoever runs this machine should know. Nothing is said of a
+/// Growth where the script of a scene is at a time \[s], in a sentence: what whoever runs this machine should know. Nothing is said of a
 /// machine that cannot run.
 pub fn warnings(scene: &MachineScene, time: f64) -> Vec<String> {
     told(&judged(scene, time).unwrap_or_default())
 }
 
-/// What grows of motions, the one that grows fastest first, in a sentence.
+/// Growth among motions, the one that grows fastest first, in a sentence.
 pub fn told(motions: &[Found]) -> Vec<String> {
     let growing: Vec<&Found> = motions.iter().filter(|found| found.grows()).collect();
     let rest = growing.len().saturating_sub(1);

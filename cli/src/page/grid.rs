@@ -32,7 +32,7 @@ struct Column {
 }
 
 impl Grid {
-    /// Of so many rows.
+    /// Grid of so many rows.
     pub fn new(rows: usize) -> Self {
         Self { columns: vec![], rows }
     }

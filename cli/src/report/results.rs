@@ -172,7 +172,7 @@ fn named(bearing: &str, column: &str) -> String {
 
 /// Columns of the tables of a machine's parts.
 pub struct PartColumns {
-    /// Of every bearing.
+    /// Columns of every bearing.
     pub bearings: Vec<Columns>,
     /// Which of the table of the shaft, the time first; none of a bearing alone.
     pub shaft: Option<Vec<bool>>,

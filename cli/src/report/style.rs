@@ -16,7 +16,7 @@ pub struct PlotError {
 }
 
 impl PlotError {
-    /// Of a file.
+    /// Error about a file.
     pub fn new(path: &Path, why: &dyn Error) -> Self {
         Self { path: path.display().to_string(), why: why.to_string() }
     }

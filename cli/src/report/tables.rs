@@ -15,9 +15,9 @@ pub enum Tables {
     Whole(Box<(MachineColumns, TableWriter)>),
     /// A table of every bearing, and one of the shaft.
     Each {
-        /// Of every bearing.
+        /// Table of every bearing.
         bearings: Vec<(Columns, TableWriter)>,
-        /// Of the shaft.
+        /// Table of the shaft.
         shaft: Option<ShaftTable>,
     },
 }

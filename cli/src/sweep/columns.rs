@@ -60,7 +60,7 @@ pub fn check(scene: &MachineScene, chosen: &[String]) -> Result<(), ResultsError
 
 /// Chosen columns of a machine: those of bearings, and all of a shaft.
 pub struct GatheredMachine {
-    /// Of every bearing.
+    /// Figures of every bearing.
     pub bearings: Vec<Gathered>,
     /// Outputs of the shaft and its housings.
     pub shaft: Vec<OfColumn>,
@@ -70,7 +70,7 @@ pub struct GatheredMachine {
 }
 
 impl GatheredMachine {
-    /// Of a run of a duration \[s].
+    /// Gatherer of a run of a duration \[s].
     ///
     /// # Errors
     /// If a column is not there.

@@ -94,9 +94,9 @@ impl OfColumn {
 
 /// All of them.
 pub struct Gathered {
-    /// Of the quantities whose means are reported.
+    /// Extremes of the quantities whose means are reported.
     pub quantities: [Extremes; COUNT],
-    /// Of the balls.
+    /// Extremes of the balls.
     pub balls: [Extremes; OF_BALLS.len()],
     /// Chosen columns.
     pub chosen: Vec<OfColumn>,
@@ -104,7 +104,7 @@ pub struct Gathered {
 }
 
 impl Gathered {
-    /// Of a run of a duration \[s]; of variables by their names with `*` for any characters.
+    /// Gatherer of a run of a duration \[s]; of variables by their names with `*` for any characters.
     ///
     /// # Errors
     /// If a variable is not there.

@@ -32,9 +32,9 @@ pub struct Watch {
 
 /// Gathered figures of a run.
 pub struct Seen {
-    /// Of every bearing.
+    /// Figures of every bearing.
     pub bearings: Vec<BearingSeen>,
-    /// Of the shaft with its housings.
+    /// Figures of the shaft with its housings.
     pub shaft: Option<ShaftSeen>,
 }
 
@@ -106,7 +106,7 @@ impl<'a> Part<'a> {
 }
 
 impl Watch {
-    /// Of a machine that has not been played yet.
+    /// Gatherer of a machine that has not been played yet.
     pub fn of(machine: &Machine) -> Self {
         let phases = match machine {
             Machine::Bearing(bearing) => &bearing.scene().phase,

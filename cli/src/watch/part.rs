@@ -39,7 +39,7 @@ pub struct PartSeen {
 }
 
 impl PartWatch {
-    /// Of blocks that have seen nothing, of phases, and of what has a least and a largest value there; forces have a moment at an arm \[m].
+    /// Gatherer of blocks that have seen nothing, of phases, and of what has a least and a largest value there; forces have a moment at an arm \[m].
     pub fn new(blocks: Blocks, phases: &[PhaseSection], peaks: &[Peak], arm: f64) -> Self {
         Self {
             phases: PhaseWatch::of_all(phases, blocks.quantities(), peaks, arm),

@@ -79,7 +79,7 @@ pub struct Now<'a> {
 }
 
 impl PhaseWatch {
-    /// Of every phase, of quantities and peaks; forces have a moment at an arm \[m].
+    /// Gatherers of every phase, of quantities and peaks; forces have a moment at an arm \[m].
     pub fn of_all(phases: &[PhaseSection], quantities: &[Watched], peaks: &[Peak], arm: f64) -> Vec<Self> {
         let of = |phase: &PhaseSection| {
             let window = [phase.from.0, phase.to.0];

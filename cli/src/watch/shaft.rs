@@ -33,7 +33,7 @@ pub struct ShaftSeen {
 }
 
 impl ShaftWatch {
-    /// Of shafts that have not been played yet.
+    /// Gatherer of shafts that have not been played yet.
     pub fn of(system: &System) -> Self {
         let quantities = ShaftQuantities::of(system);
         let (scene, arm) = (system.scene(), lengths_of(system).pitch_radius);

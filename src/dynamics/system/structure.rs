@@ -271,7 +271,7 @@ impl StructureTrial {
         }
     }
 
-    /// What holds a given speed and given coordinates, and powers.
+    /// Forces that hold a given speed and given coordinates, and powers.
     fn account(&mut self, model: &Structure, load: &StructureLoad) {
         let end = &mut self.end;
         for (force, &k) in end.holding.iter_mut().zip(&model.held) {

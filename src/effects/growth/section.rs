@@ -33,9 +33,9 @@ pub struct Section {
     pub balls: Schedule,
     /// Do rings and what they are fitted to grow by their rotation?
     pub rotation: bool,
-    /// What the inner ring sits on.
+    /// Seat of the inner ring: a shaft.
     pub shaft: Option<Partner>,
-    /// What the outer ring sits in.
+    /// Seat of the outer ring: a housing.
     pub housing: Option<Partner>,
 }
 

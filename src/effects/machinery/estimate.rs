@@ -262,7 +262,7 @@ impl Verdict {
         }
     }
 
-    /// Of an effect that both twins are there of: it matters where it changes a quantity by more than the threshold.
+    /// Verdict of an effect that both twins are there of: it matters where it changes a quantity by more than the threshold.
     pub fn of_twin(twin: &Twin, changes: Changes, threshold: f64, tail: &str) -> Self {
         let (quantity, change) = changes.largest().unwrap_or(("torque", 0.0));
         let standing = if twin.on { Standing::On } else { Standing::Off };
@@ -284,7 +284,7 @@ impl Verdict {
         }
     }
 
-    /// Of an effect whose other twin has no settled state: it decides whether the bearing can run at all.
+    /// Verdict of an effect whose other twin has no settled state: it decides whether the bearing can run at all.
     pub fn of_no_state(twin: &Twin, threshold: f64, why: &str) -> Self {
         let with = if twin.on { "without" } else { "with" };
         Self {

@@ -34,7 +34,7 @@ pub struct Beams {
     torsion: Option<(Torsion, usize)>,
 }
 
-/// The same by the coordinates of its stations and the amplitudes of modes between them.
+/// Beams by the coordinates of their stations and the amplitudes of modes between them.
 pub struct Reduced {
     /// Mass matrix.
     pub mass: DMatrix<f64>,

@@ -21,14 +21,14 @@ pub struct Lump {
 }
 
 impl Lump {
-    /// The same by more coordinates, the new ones without effect.
+    /// Lump by more coordinates, the new ones without effect.
     #[must_use]
     pub fn widened(self, size: usize) -> Self {
         Self { map: self.map.resize_horizontally(size, 0.0), ..self }
     }
 }
 
-/// What acts on a structure because its frame turns.
+/// Force on a structure because its frame turns.
 #[derive(Clone, Debug)]
 pub struct FrameForce {
     /// Generalised force.
@@ -77,7 +77,7 @@ fn frame_force(
     sum
 }
 
-/// What forces of inertia of a frame that turns add to the stiffness and the damping of rigid parts at a state of coordinates and rates, the
+/// Stiffness and damping that forces of inertia of a frame which turns add to rigid parts at a state of coordinates and rates, the
 /// Coriolis forces among it.
 pub fn frame_matrices(
     lumps: &[Lump],

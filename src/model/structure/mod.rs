@@ -147,7 +147,7 @@ pub struct StructurePowers {
 pub struct StructureEnergies {
     /// Work of loads, weight and drive.
     pub input: f64,
-    /// The same of every step, whether it put in or took out.
+    /// Sum of the sizes of that work over the steps, whether it was put in or taken out.
     pub worked: f64,
     /// Given to its bearings and links.
     pub bearings: f64,

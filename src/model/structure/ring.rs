@@ -41,7 +41,7 @@ impl Carrier {
         Self { structure, stations: vec![Map::zeros(0); stations], sliding: vec![], modes: vec![] }
     }
 
-    /// The same with rings that slide at some of its stations.
+    /// Carrier with rings that slide at some of its stations.
     #[must_use]
     pub fn with_rings(self, rings: &[Ring]) -> Self {
         if rings.is_empty() {

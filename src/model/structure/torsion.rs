@@ -15,7 +15,7 @@ pub struct Torsion {
     stiffness: DMatrix<f64>,
 }
 
-/// The same by the twist of its stations and the amplitudes of modes between them.
+/// Torsion by the twist of its stations and the amplitudes of modes between them.
 #[derive(Clone, Debug)]
 pub struct ReducedTorsion {
     /// Inertia of the coordinates.
@@ -26,7 +26,7 @@ pub struct ReducedTorsion {
     pub by_turn: DVector<f64>,
     /// Twist of each station by the coordinates.
     pub stations: Vec<DVector<f64>>,
-    /// The same of each node.
+    /// Twist of each node by the coordinates.
     pub nodes: Vec<DVector<f64>>,
 }
 
