@@ -140,9 +140,9 @@ impl MachineVariables {
         for &reference in &self.inputs {
             if let (Some(source), Some(shaft)) = (shaft_source(&self.rows[reference]), &mut shaft) {
                 let (value, rate) = (values[reference], rates[reference]);
-                for number in [value, rate].into_iter().filter(|number| !number.is_finite()) {
+                if let Some(value) = [value, rate].into_iter().find(|number| !number.is_finite()) {
                     let name = self.rows[reference].name.clone();
-                    return Err(InputError::NotFinite { name, value: number });
+                    return Err(InputError::NotFinite { name, value });
                 }
                 source.set(shaft, value, rate);
             }
