@@ -7,6 +7,7 @@
 
 use super::equations::BearingStep;
 use crate::model::state::{BlockRenewal, KeptBlock};
+use crate::numerics::elementary::ln;
 use crate::numerics::size::larger;
 
 /// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
@@ -125,7 +126,7 @@ impl BearingStep<'_> {
                 continue;
             }
             let rate = now / if together { progress.before } else { trial.before };
-            let more = if rate < 1.0 { (now.ln() / -rate.ln()).ceil().min(MOST) } else { MOST };
+            let more = if rate < 1.0 { (ln(now) / -ln(rate)).ceil().min(MOST) } else { MOST };
             if together {
                 progress.bad += 1.0;
                 progress.most = progress.most.max(more);
