@@ -9,6 +9,7 @@ use super::materials::Pair;
 use super::motion::BallMotion;
 use super::normal::{Damping, NormalLoad};
 use super::pair::PairForces;
+use crate::numerics::elementary::pow;
 use crate::numerics::scalar::{Single, cross, dot};
 
 /// [m/s] slip below which friction is viscous: `mu Q v/sqrt(v^2 + v_0^2)`. Turning balls slide at metres a second.
@@ -35,7 +36,7 @@ impl BallBallModel {
 
     /// \[J] elastic energy at an approach \[m].
     pub fn elastic_energy(&self, approach: f64) -> f64 {
-        0.4 * self.stiffness * approach.max(0.0).powf(2.5)
+        0.4 * self.stiffness * pow(approach.max(0.0), 2.5)
     }
 
     /// \[m] approach of two balls; negative is a gap.

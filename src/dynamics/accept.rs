@@ -23,6 +23,7 @@ use crate::model::bearing::Ball;
 use crate::model::bodies::{Body, PerRace, Race};
 use crate::model::energies::{Energies, Powers, Pressed};
 use crate::model::state::{BallState, BodyState, State, Trend, axes_of};
+use crate::numerics::elementary::cbrt;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 use crate::numerics::step_control::LARGEST_CUT;
@@ -271,7 +272,7 @@ fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> 
         });
     }
     pairs.between_balls().for_each(|pair| see(&pair.forces));
-    let stiffness = 1.5 * cube.cbrt();
+    let stiffness = 1.5 * cbrt(cube);
     let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * reach;
     let of_load = (SHARE_OF_ERROR * error).max(RELATIVE_TOLERANCE * load).min(MOST_RELATIVE_TOLERANCE * load);
     FORCE_TOLERANCE.max(of_load).max(round_off)

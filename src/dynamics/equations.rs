@@ -37,6 +37,10 @@ pub struct BearingStep<'a> {
     pub(super) assembled: u64,
     /// Corrections so far.
     pub(super) corrections: u32,
+    /// [-] largest residual of the bodies over its tolerance: now, and before the last correction.
+    pub(super) of_bodies: [f64; 2],
+    /// Are the rows of the bodies those of this step?
+    pub(super) renewed_rows: bool,
     /// Was nothing evaluated yet?
     fresh: bool,
 }
@@ -82,6 +86,8 @@ impl<'a> BearingStep<'a> {
             workspace,
             assembled: 0,
             corrections: 0,
+            of_bodies: [0.0; 2],
+            renewed_rows: false,
             fresh: true,
         }
     }
@@ -315,7 +321,8 @@ impl Equations for BearingStep<'_> {
         }
         if !independent {
             let sums = self.scatter();
-            norm = larger(norm, self.assemble_bodies(&sums));
+            self.of_bodies[0] = self.assemble_bodies(&sums);
+            norm = larger(norm, self.of_bodies[0]);
         }
         if renewed {
             self.differentiate_renewed();

@@ -1,13 +1,14 @@
-//! The Newton matrix of a step: balls, eliminated, that many steps share, and the bodies' own rows, new in every step.
+//! The Newton matrix of a step: balls, eliminated, and what they leave in the bodies' rows. Many steps share both.
 //!
 //! A ball's block turns with its orbit and changes with its load, and blocks are computed anew one by one ([`super::wear`]).
 
-use nalgebra::{DMatrix, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3, Vector6};
 
 use super::equations::BearingStep;
+use super::group::Groups;
 use super::{Workspace, wear};
 use crate::model::bodies::{Body, Race};
-use crate::model::state::{BlockRenewal, KeptBlock};
+use crate::model::state::{BlockRenewal, KeptBlock, KeptBorder};
 use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets, Six};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::orbit_turn::OrbitTurn;
@@ -79,13 +80,9 @@ impl BearingStep<'_> {
             neighbours,
             arrowhead,
             ring,
-            factorised,
-            reduced,
-            condensed,
+            reduced: border,
             ..
         } = &mut *self.workspace;
-        *factorised = true;
-        let border = reduced;
         if border.nrows() == rows {
             border.as_mut_slice().fill(0.0);
         } else {
@@ -108,19 +105,42 @@ impl BearingStep<'_> {
             border.view_mut((own, race), size).copy_from(&cage.cage_by_race);
         }
         if neighbours.is_empty() {
-            let turns = kept.balls.chunks(WIDTH).zip(groups.positions());
-            let turns = turns.map(|(kept, positions)| turn_of_lanes(kept, positions, &origin));
-            arrowhead.reduce(kept.blocks.iter().zip(turns), (members, model.spacing_row()), border);
+            arrowhead.place(turns(&kept.balls, groups, &origin), (members, model.spacing_row()));
+            arrowhead.reduce(kept.blocks.iter(), border);
         } else {
             let blocks: Vec<&Block> = balls.iter().map(|trial| &trial.block).collect();
             let links: Vec<Link> = neighbours.iter().map(|pair| pair.link).collect();
             *border = ring.reduce(&blocks, &links, border, offsets);
         }
+        let KeptBorder { rows, axes } = &mut kept.border;
+        rows.clear();
+        rows.extend_from_slice(border.as_slice());
+        axes.clear();
+        axes.extend(members.iter().map(|member| member.axes));
+        self.workspace.factors_of.clear();
+        self.renewed_rows = true;
+        self.take_up_border();
+    }
+
+    /// Factorises the rows of the bodies as they are kept, unless that was done.
+    pub(super) fn take_up_border(&mut self) {
+        let (model, offsets) = (self.model, self.model.border_offsets());
+        let Workspace { kept, factors_of, reduced, condensed, factorised, .. } = &mut *self.workspace;
+        *factorised = true;
+        if *factors_of == kept.border.rows {
+            return;
+        }
+        factors_of.clone_from(&kept.border.rows);
+        let size = model.border_size();
+        if reduced.nrows() != size {
+            *reduced = DMatrix::zeros(size, size);
+        }
+        reduced.copy_from_slice(factors_of);
         let carried = Race::BOTH.map(|race| {
             let first = offsets[Body::from(race).index()].filter(|_| model.is_carried(race));
             first.map(|first| first..first + BLOCK)
         });
-        condensed.factorise(border, |row| !carried.iter().flatten().any(|rows| rows.contains(&row)));
+        condensed.factorise(reduced, |row| !carried.iter().flatten().any(|rows| rows.contains(&row)));
     }
 
     /// \[m] what orbits are about: the centre of the outer race, or of an ideal cage.
@@ -158,6 +178,9 @@ impl BearingStep<'_> {
             if !self.balls_are_independent() {
                 self.factorise();
             }
+        } else if looked && self.rows_have_worn() {
+            self.differentiate_bodies();
+            self.factorise();
         }
     }
 
@@ -199,11 +222,15 @@ impl BearingStep<'_> {
     /// Takes the right-hand sides of balls and bodies, and solves for them but for races that are carried, whose right-hand sides are
     /// left without them. False without a matrix, or where that is singular.
     pub(super) fn eliminate(&mut self) -> bool {
+        let (offsets, shared, origin) =
+            (self.model.border_offsets(), self.model.spacing_row(), self.races_origin());
+        self.workspace.list_members(offsets);
         self.take_right_sides();
-        let offsets = self.model.border_offsets();
         let Workspace {
             balls,
+            groups,
             kept,
+            members,
             neighbours,
             arrowhead,
             ring,
@@ -216,10 +243,13 @@ impl BearingStep<'_> {
         if !neighbours.is_empty() {
             ring.eliminate(ball_corrections, y, offsets);
         } else if kept.balls.len() == balls.len() {
+            arrowhead.place(turns(&kept.balls, groups, &origin), (members, shared));
             arrowhead.eliminate(kept.blocks.iter(), x, y);
         } else {
             return false;
         }
+        let turned = members.iter().zip(&kept.border.axes);
+        turned.for_each(|(member, then)| turn_moments(y, member.from, &member.axes, then));
         condensed.eliminate(y)
     }
 
@@ -228,6 +258,7 @@ impl BearingStep<'_> {
         let offsets = self.model.border_offsets();
         let Workspace {
             kept,
+            members,
             neighbours,
             arrowhead,
             ring,
@@ -238,6 +269,8 @@ impl BearingStep<'_> {
             ..
         } = &mut *self.workspace;
         condensed.substitute(y);
+        let turned = members.iter().zip(&kept.border.axes);
+        turned.for_each(|(member, then)| turn_moments(y, member.from, then, &member.axes));
         let solved = if neighbours.is_empty() {
             arrowhead.substitute(kept.blocks.iter(), group_corrections, y)
         } else {
@@ -321,12 +354,31 @@ pub(super) fn prepare_correction(bearings: &mut [BearingStep<'_>]) {
             step.renew(corrected);
         }
         step.corrections += 1;
+        step.of_bodies[1] = step.of_bodies[0];
         let tolerance = step.force_tolerance;
         let workspace = &mut *step.workspace;
         for (ball, trial) in workspace.balls.iter_mut().enumerate() {
             trial.before = workspace.groups.size(ball) / tolerance;
         }
     }
+}
+
+/// Turns the moments of a body whose rows begin at `first` from axes that it had to others: the rows of a race that spins stay what they are, as
+/// the load zone does.
+fn turn_moments(y: &mut DVector<f64>, first: usize, from: &Matrix3<f64>, to: &Matrix3<f64>) {
+    if from != to {
+        let moments = to * from.tr_mul(&y.fixed_rows::<3>(first + 3));
+        y.fixed_rows_mut::<3>(first + 3).copy_from(&moments);
+    }
+}
+
+/// Turns of all balls since their blocks were computed, by group.
+fn turns<'a>(
+    kept: &'a [KeptBlock],
+    groups: &'a Groups,
+    origin: &'a Vector3<f64>,
+) -> impl Iterator<Item = OrbitTurn<Lanes>> + 'a {
+    kept.chunks(WIDTH).zip(groups.positions()).map(|(kept, positions)| turn_of_lanes(kept, positions, origin))
 }
 
 /// The negative of a residual.

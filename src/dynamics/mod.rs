@@ -95,8 +95,8 @@ struct Counted {
 /// iterate  equations.rs   groups, balls, bodies, cage,      motion, contacts, forces, residuals of a trial;
 ///          neighbours.rs  neighbours                          with derivatives of balls whose blocks are due
 ///          matrix.rs      kept, ring                        balls eliminated, alone or as a ring of neighbours
-///                         members, reduced, arrowhead,      rows of the bodies after the balls, factorised
-///                         condensed, factorised
+///                         members, arrowhead, reduced,      rows of the bodies after the balls, factorised
+///                         factors_of, condensed, factorised   where they are not those that are kept
 ///                         ball_, group_, border_corrections
 ///          repair.rs      balls.repaired                    blocks of single balls computed anew
 /// end      last_correction.rs  last_correction, settled     last correction, without evaluation
@@ -123,7 +123,9 @@ pub struct Workspace {
     neighbours: Vec<NeighbourTrial>,
     /// Factors of the bodies' rows, balls eliminated.
     arrowhead: Arrowhead,
-    /// Rows of the bodies with what the balls leave in them; in those of carried races, what the other bodies leave too.
+    /// Rows of the bodies with what the balls leave in them, that are factorised.
+    factors_of: Vec<f64>,
+    /// The same; in those of carried races, what the other bodies leave too.
     reduced: DMatrix<f64>,
     /// The bodies that nothing carries, eliminated from `reduced`.
     condensed: Condensed,

@@ -1,10 +1,13 @@
 //! Which blocks of the Newton matrix are computed anew: each where the corrections that it was not good enough for have cost as much as
 //! it does.
 //!
+//! The rows of the bodies are computed anew with any block, and where they alone have worn.
+//!
 //! Balls of all bearings that a border joins are corrected together: one whose block has worn costs all of them another correction.
 
 use super::equations::BearingStep;
 use crate::model::state::{BlockRenewal, KeptBlock};
+use crate::numerics::elementary::ln;
 use crate::numerics::size::larger;
 
 /// [-] price of one more correction, per ball, over that of a new block (benches/speed.rs): where balls are solved together and all
@@ -83,6 +86,19 @@ impl BearingStep<'_> {
             trial.renewed = renewal.due > 0;
             renewal.due = renewal.due.saturating_sub(1);
         }
+        let rows = self.model.border_size();
+        if rows > 0 && self.workspace.kept.border.rows.len() == rows * rows {
+            self.take_up_border();
+        }
+    }
+
+    /// Shall the rows of the bodies be new after a correction that has not led to the solution, though no block is? They cost a tenth of what
+    /// a correction does, so as soon as that saves one. What they lead to is seen in these rows alone: those of balls are met whatever the
+    /// bodies do.
+    pub(super) fn rows_have_worn(&self) -> bool {
+        let [now, before] = self.of_bodies;
+        // As much is left of what is left as of what was before.
+        !self.renewed_rows && !self.balls_are_independent() && now > 1.0 && now * now > before
     }
 
     /// Notes which old blocks have led nowhere, before all are computed anew.
@@ -110,7 +126,7 @@ impl BearingStep<'_> {
                 continue;
             }
             let rate = now / if together { progress.before } else { trial.before };
-            let more = if rate < 1.0 { (now.ln() / -rate.ln()).ceil().min(MOST) } else { MOST };
+            let more = if rate < 1.0 { (ln(now) / -ln(rate)).ceil().min(MOST) } else { MOST };
             if together {
                 progress.bad += 1.0;
                 progress.most = progress.most.max(more);

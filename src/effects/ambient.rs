@@ -1,6 +1,7 @@
 //! Loads on balls and bodies from outside of the bearing: weight, the forces of inertia of a moving frame, and the drag of
 //! the medium around the balls. [`Ambient`] is the one place of all of them.
 
+use crate::numerics::elementary::pow;
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
@@ -57,7 +58,7 @@ impl Medium {
         // Drag over that of Stokes's law, by the square of the speed: the drag coefficient times Re/24.
         let factor = square.map_smooth(|square| {
             let reynolds = over_viscosity * square.sqrt();
-            let (slow, fast) = (0.15 * reynolds.powf(0.687), NEWTON_RANGE / 24.0 * reynolds);
+            let (slow, fast) = (0.15 * pow(reynolds, 0.687), NEWTON_RANGE / 24.0 * reynolds);
             let (excess, exponent) = if 1.0 + slow >= fast { (slow, 0.687) } else { (fast, 1.0) };
             let slope = if square > 0.0 { 0.5 * exponent * excess / square } else { 0.0 };
             (if 1.0 + slow >= fast { 1.0 + slow } else { fast }, slope)

@@ -1,6 +1,6 @@
 //! The complete state of a running bearing: plain data, cloned to save and restore.
 
-use nalgebra::{UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{Bodies, Body, Constraint, PerRace, Race, RigidBody};
@@ -417,17 +417,37 @@ pub struct KeptMatrix {
     pub balls: Vec<KeptBlock>,
     /// The blocks themselves, several in the lanes of one, and their couplings to the bodies that forces move.
     pub blocks: Vec<Eliminated>,
+    /// Rows of the bodies that forces move.
+    pub border: KeptBorder,
 }
 
 impl KeptMatrix {
     /// Becomes a copy of another without taking memory, where both have as many blocks.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { step, balls, blocks } = self;
+        let Self { step, balls, blocks, border } = self;
         *step = other.step;
         balls.clone_from(&other.balls);
         blocks.truncate(other.blocks.len());
         blocks.iter_mut().zip(&other.blocks).for_each(|(own, other)| own.copy_from(other));
         blocks.extend_from_slice(&other.blocks[blocks.len()..]);
+        border.rows.clone_from(&other.border.rows);
+        border.axes.clone_from(&other.border.axes);
+    }
+}
+
+/// Rows of the bodies that forces move, and of an ideal cage, with what the balls leave in them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KeptBorder {
+    /// The rows, column by column; none while there is no matrix.
+    pub rows: Vec<f64>,
+    /// What turned world axes into those of each body's moments when they were computed.
+    pub axes: Vec<Matrix3<f64>>,
+}
+
+impl KeptBorder {
+    /// Are these so many rows, of so many bodies, or none? A check for those that come from outside.
+    pub fn fits(&self, rows: usize, bodies: usize) -> bool {
+        self.rows.is_empty() || (self.rows.len() == rows * rows && self.axes.len() == bodies)
     }
 }
 

@@ -172,6 +172,14 @@ impl Values for Lanes {
     fn with_sign_of(self, other: Self) -> Self {
         self.zip(other, f64::copysign)
     }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        self.map(f64::power_of_two)
+    }
+    #[inline(always)]
+    fn mantissa_and_exponent(self) -> (Self, Self) {
+        (self.map(|x| x.mantissa_and_exponent().0), self.map(|x| x.mantissa_and_exponent().1))
+    }
 }
 
 impl num_traits::Zero for Lanes {

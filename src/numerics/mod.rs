@@ -3,6 +3,7 @@
 pub mod arrowhead;
 pub mod condensed;
 pub mod eigen;
+pub mod elementary;
 pub mod elliptic;
 pub mod given;
 pub mod hermite;

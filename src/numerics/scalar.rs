@@ -126,7 +126,22 @@ pub trait Values: Scalar {
 
     /// The size of this number with the sign of another.
     fn with_sign_of(self, other: Self) -> Self;
+
+    /// 2 to the power of this whole number from -1022 to 1023.
+    fn power_of_two(self) -> Self;
+
+    /// A number above 0 that is not subnormal, as a mantissa from 1/sqrt(2) to sqrt(2) and an exponent of 2.
+    fn mantissa_and_exponent(self) -> (Self, Self);
 }
+
+/// [-] 2^52: where a whole number is added to it, the last bits are that number.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// Exponent of 1 in bits.
+const BIAS: f64 = 1023.0;
+/// Bits of a number that its exponent stands above.
+const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
+/// Bits of the least mantissa, 1/sqrt(2) but for its last digits.
+const LEAST_MANTISSA: u64 = 0x3fe6_a09e_0000_0000;
 
 impl Values for f64 {
     #[inline(always)]
@@ -168,6 +183,18 @@ impl Values for f64 {
     #[inline(always)]
     fn with_sign_of(self, other: Self) -> Self {
         self.copysign(other)
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        Self::from_bits((self + (WHOLE + BIAS)).to_bits() << MANTISSA)
+    }
+    #[inline(always)]
+    fn mantissa_and_exponent(self) -> (Self, Self) {
+        // The exponent counts up where the mantissa is its least.
+        let bits = self.to_bits().wrapping_add(1f64.to_bits() - LEAST_MANTISSA);
+        let exponent = Self::from_bits((bits >> MANTISSA) | WHOLE.to_bits()) - (WHOLE + BIAS);
+        let mantissa = (bits & ((1 << MANTISSA) - 1)) + LEAST_MANTISSA;
+        (Self::from_bits(mantissa), exponent)
     }
 }
 

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::elementary::{log2, pow};
+use super::scalar::Values;
+
 /// [-] error aimed at, over the tolerance.
 const SAFETY: f64 = 0.9;
 /// Exponents of the PI controller for a second-order method (local error of order 3; Gustafsson 1991).
@@ -9,6 +12,8 @@ const PROPORTIONAL: f64 = 0.4 / 3.0;
 const INTEGRAL: f64 = 0.7 / 3.0;
 /// Step sizes (notches) per factor of 2.
 const NOTCHES_PER_OCTAVE: f64 = 4.0;
+/// [-] steps within an octave, over the smallest: powers of `2^(1/4)`.
+const WITHIN_OCTAVE: [f64; 4] = [1.0, 1.189_207_115_002_721, std::f64::consts::SQRT_2, 1.681_792_830_507_429];
 /// Largest growth and shrinkage of one step, in notches.
 const MAX_GROWTH: i32 = 4;
 const MAX_SHRINKAGE: i32 = 12;
@@ -43,8 +48,7 @@ impl StepControl {
     /// Goes on with the largest quantised step not above a limit \[s], where the present one is; but not with one below the
     /// smallest allowed.
     pub fn cap(&mut self, limit: f64) {
-        let lowest =
-            ((self.min_step / self.max_step).log2() * NOTCHES_PER_OCTAVE - 1e-9).ceil().min(0.0) as i32;
+        let lowest = (log2(self.min_step / self.max_step) * NOTCHES_PER_OCTAVE - 1e-9).ceil().min(0.0) as i32;
         self.notch = self.notch.min(notch_below(limit, self.max_step).max(lowest));
     }
 
@@ -53,7 +57,8 @@ impl StepControl {
         if self.notch == 0 {
             return self.max_step;
         }
-        self.max_step * (f64::from(self.notch) / NOTCHES_PER_OCTAVE).exp2()
+        let (octaves, notches) = (self.notch.div_euclid(4), self.notch.rem_euclid(4));
+        self.max_step * (WITHIN_OCTAVE[notches as usize] * f64::from(octaves).power_of_two())
     }
 
     /// \[s] next step on the way to a point `remaining` \[s] ahead; the last few steps before it are made even.
@@ -73,7 +78,7 @@ impl StepControl {
         // An error of exactly zero must not ask for an infinite step.
         let error = if error < 1e-10 { 1e-10 } else { error };
         if error.is_nan() || error > 1.0 {
-            let notches = NOTCHES_PER_OCTAVE * (SAFETY * error.powf(-1.0 / 3.0)).log2();
+            let notches = NOTCHES_PER_OCTAVE * log2(SAFETY * pow(error, -1.0 / 3.0));
             self.shrink((-notches).ceil() as i32);
             return false;
         }
@@ -81,8 +86,8 @@ impl StepControl {
         let floor = if error < KEPT_BELOW { 0 } else { -MAX_SHRINKAGE };
         // The largest step that is not cut stays whatever the powers are.
         if self.notch < 0 || floor < 0 {
-            let factor = SAFETY * error.powf(-INTEGRAL) * self.last_error.powf(PROPORTIONAL);
-            let change = (NOTCHES_PER_OCTAVE * factor.log2()).floor() as i32;
+            let factor = SAFETY * pow(error, -INTEGRAL) * pow(self.last_error, PROPORTIONAL);
+            let change = (NOTCHES_PER_OCTAVE * log2(factor)).floor() as i32;
             self.notch = (self.notch + change.clamp(floor, ceiling)).min(0);
         }
         self.growth_blocked = self.growth_blocked.saturating_sub(1);
@@ -131,7 +136,7 @@ impl StepControl {
 
 /// The largest quantised step not above a step \[s].
 fn notch_below(step: f64, max_step: f64) -> i32 {
-    ((step / max_step).log2() * NOTCHES_PER_OCTAVE + 1e-9).floor().min(0.0) as i32
+    (log2(step / max_step) * NOTCHES_PER_OCTAVE + 1e-9).floor().min(0.0) as i32
 }
 
 #[cfg(test)]

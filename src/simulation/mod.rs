@@ -252,6 +252,7 @@ impl Simulation {
             && [0, self.state.balls.len()].contains(&snapshot.state.matrix.balls.len())
             && snapshot.state.matrix.blocks.len() >= snapshot.state.matrix.balls.len().div_ceil(WIDTH)
             && snapshot.state.matrix.blocks.iter().all(|block| block.fits(self.model.moved_bodies(), shares))
+            && snapshot.state.matrix.border.fits(self.model.border_size(), self.model.moved_bodies())
             && snapshot.state.differences.len() == self.state.differences.len()
             && snapshot.state.differences.iter().all(|of_ball| {
                 Race::BOTH.into_iter().all(|race| of_ball[race].fits(self.model.polynomials(race)))

@@ -121,8 +121,8 @@ fn closed_form_agrees_with_the_dense_solution() {
         let exact = dense.lu().solve(&rhs).unwrap();
 
         let mut arrowhead = Arrowhead::default();
-        let turned = blocks.iter().enumerate().map(|(group, blocks)| (blocks, turn(group)));
-        arrowhead.reduce(turned, (&now, shared), &mut border);
+        arrowhead.place((0..groups).map(turn), (&now, shared));
+        arrowhead.reduce(blocks.iter(), &mut border);
         // lanes without a block have no right-hand side
         let lane = |j: usize, k: usize| if j < n_balls { rhs[BLOCK * j + k] } else { 0.0 };
         let mut balls: Vec<Six<Lanes>> = (0..groups)

@@ -13,6 +13,7 @@
 //! found together. The force on the ball is the derivative of the energy by its place, with a normal turned by the drop's
 //! slope, so that no energy is made; as `b` follows the approach, it is a few per cent off Hertz's load at the edges.
 
+use crate::numerics::elementary::pow;
 use crate::numerics::scalar::{Dual, Scalar, Single, SmoothMap, Values};
 
 /// Exponent of the sum of what carries the ball.
@@ -210,14 +211,14 @@ impl Spalls {
         let sides = cover.square().square().scale(rigid) + T::constant(FLOOR);
         let sides_by_across = (cover.square() * cover * off).scale(-8.0 * rigid / limit);
         // all of them
-        let inverse = |p: T| p.map_smooth(|p| (p.powf(-EXPONENT), -EXPONENT * p.powf(-EXPONENT - 1.0)));
-        let sum = inverse(ends) + inverse(sides) + T::constant(spall.depth.powf(-EXPONENT));
+        let inverse = |p: T| p.map_smooth(|p| (pow(p, -EXPONENT), -EXPONENT * pow(p, -EXPONENT - 1.0)));
+        let sum = inverse(ends) + inverse(sides) + T::constant(pow(spall.depth, -EXPONENT));
         let depth = sum.map_smooth(|sum| {
-            let depth = sum.powf(-1.0 / EXPONENT);
+            let depth = pow(sum, -1.0 / EXPONENT);
             (depth, -depth / (EXPONENT * sum))
         });
         let share =
-            |p: T| (depth / p).map_smooth(|x| (x.powf(EXPONENT + 1.0), (EXPONENT + 1.0) * x.powf(EXPONENT)));
+            |p: T| (depth / p).map_smooth(|x| (pow(x, EXPONENT + 1.0), (EXPONENT + 1.0) * pow(x, EXPONENT)));
         let [of_ends, of_sides] = [share(ends), share(sides)];
         [depth, of_ends * ends_by_arc, of_sides * sides_by_across, of_ends * ends_by_approach * touching]
     }

@@ -9,6 +9,7 @@
 //!
 //! Shear is that of the gap all around (Petroff 1883), in a pocket of the ball in its middle. All of the work against both is lost.
 
+use crate::numerics::elementary::pow;
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
@@ -64,7 +65,7 @@ impl<S: Scalar> Gap<S> {
             let gap = (S::constant(self.clearance) - dot(&self.eccentricity, &direction)).positive_part();
             let gap = gap.square() + least;
             let pressure = gap.map_smooth(|square| {
-                let value = square.powf(-0.5 * power);
+                let value = pow(square, -0.5 * power);
                 (value, -0.5 * power * value / square)
             });
             sum -= direction * (pressure * speed).scale(weight * cosine);

@@ -3,6 +3,7 @@
 //! Two lands, one on either side of the balls. On each the cage, a ring, may touch the land, a cylinder, along a line:
 //! Lundberg's empirical `delta = 3.84e-5 Q^0.9/l^0.8` (mm, N; steel), inverted, and friction of complete slip.
 
+use crate::numerics::elementary::pow;
 use nalgebra::Vector3;
 
 use super::film::{self, Gap};
@@ -70,7 +71,7 @@ impl LandModel {
 
     /// \[J] elastic energy of one land at an approach \[m].
     pub fn elastic_energy(&self, approach: f64) -> f64 {
-        self.stiffness * approach.max(0.0).powf(EXPONENT + 1.0) / (EXPONENT + 1.0)
+        self.stiffness * pow(approach.max(0.0), EXPONENT + 1.0) / (EXPONENT + 1.0)
     }
 
     /// \[m] approach on the land at an axial position \[m] of the cage; negative is a gap.
@@ -150,7 +151,7 @@ impl LandModel {
         let sliding = slip - outwards * approach_rate;
 
         let elastic = approach.map_smooth(|d| {
-            let load = self.stiffness * d.powf(EXPONENT);
+            let load = self.stiffness * pow(d, EXPONENT);
             (load, EXPONENT * load / d)
         });
         let load = NormalLoad::damped(elastic, approach_rate, self.damping);

@@ -7,6 +7,7 @@
 //! vector at mu Q (design of the law `saturated`). In a sphere the patch is round and has no such direction:
 //! longitudinal and lateral coefficient are both their mean, and spin does not couple.
 
+use crate::numerics::elementary::pow;
 use nalgebra::Vector3;
 
 use super::film::{self, Gap};
@@ -72,7 +73,7 @@ impl PocketModel {
 
     /// \[J] elastic energy at an approach \[m].
     pub fn elastic_energy(&self, approach: f64) -> f64 {
-        0.4 * self.shape.stiffness * approach.max(0.0).powf(2.5)
+        0.4 * self.shape.stiffness * pow(approach.max(0.0), 2.5)
     }
 
     /// \[m] approach of a ball and a pocket whose axis has these components [y, z] along the cage's axes; negative is a

@@ -13,7 +13,8 @@ pub mod regularised;
 use crate::contact::shape::ShapeAt;
 use crate::kalker::scaled_law::{PolynomialsFrom, ScaledKalker};
 use crate::kalker::table::CreepTable;
-use crate::numerics::scalar::{Scalar, within_limit};
+use crate::numerics::elementary::{exp, ln};
+use crate::numerics::scalar::{Scalar, SmoothMap, Values, within_limit};
 use heathcote::CurvatureEffect;
 pub use linear_theory::{CreepForces, Creepage, LinearTheory};
 use regularised::Parameters;
@@ -66,6 +67,27 @@ pub fn saturation<S: Scalar>(q: S) -> S {
     inverse.where_positive(q - S::constant(3.0), cubic)
 }
 
+/// What a film in series leaves of the stiffness of bodies whose linear force is `r` times its limit: `3 (1 - 1/w)/r` with the cube root
+/// `w` of `1 + r`, which is `3/(w + w^2 + w^3)`.
+#[derive(Clone, Copy, Debug)]
+struct InSeries;
+
+impl SmoothMap<1, 1> for InSeries {
+    #[inline(always)]
+    fn values<V: Values>(&self, [r]: [V; 1]) -> [V; 1] {
+        let root = exp(ln(V::one() + r).scale(1.0 / 3.0));
+        [V::constant(3.0) / root.polynomial(&[0.0, 1.0, 1.0, 1.0])]
+    }
+
+    #[inline(always)]
+    fn with_gradient(&self, [r]: [f64; 1]) -> ([f64; 1], [[f64; 1]; 1]) {
+        let root = exp(ln(1.0 + r) / 3.0);
+        let [divisor, by_root] = [&[0.0, 1.0, 1.0, 1.0], &[1.0, 2.0, 3.0, 0.0]].map(|of| root.polynomial(of));
+        let factor = 3.0 / divisor;
+        ([factor], [[-factor * by_root / (3.0 * root * root * divisor)]])
+    }
+}
+
 impl<S: Scalar> LinearTheory<S> {
     /// Linear theory of a contact: its shape, its depth \[m] and the root of it, the most that friction can carry \[N], and the
     /// cosine of the rolling direction against the x axis.
@@ -96,14 +118,7 @@ impl<S: Scalar> LinearTheory<S> {
         let (x, y) = (linear.longitudinal * per_force, linear.lateral * per_force);
         let z = linear.spin_moment * per_moment;
         let r = (x.square() + y.square() + z.square()).sqrt();
-        let softened = r.map_smooth(|r| {
-            if r < 1e-4 {
-                return (1.0 - 2.0 / 3.0 * r + 14.0 / 27.0 * r * r, -2.0 / 3.0 + 28.0 / 27.0 * r);
-            }
-            let power = -r.ln_1p() / 3.0;
-            let factor = -3.0 * power.exp_m1() / r;
-            (factor, (power.exp() / (1.0 + r) - factor) / r)
-        });
+        let [softened] = S::apply(&InSeries, [r]);
         let factor = S::one() - viscous_share * (S::one() - softened);
         Self {
             longitudinal: self.longitudinal * factor,

@@ -16,6 +16,7 @@ use super::twin::{Switch, Twin};
 use crate::contact::film::mixed::MixedFriction;
 use crate::contact::film::traction::ShearPressure;
 use crate::contact::film::{Film, Loading, Lubricant, RacewayFilm, Supply};
+use crate::numerics::elementary::exp;
 use crate::schema::numbers::{Number, four};
 use crate::schema::schedule::Schedule;
 use crate::schema::units::{Celsius, Viscosity};
@@ -92,7 +93,7 @@ impl Films {
         // In mm2/s and rpm, as SKF's model has them.
         let turns = (inner - outer).abs() * 30.0 / std::f64::consts::PI;
         let kinematic = viscosity / self.density * 1e6;
-        let replenishment = (-self.starvation * kinematic * turns).exp();
+        let replenishment = exp(-self.starvation * kinematic * turns);
         let dry_share = self.mixed_friction.of_bearing(turns, kinematic, self.mean_diameter, lubrication);
         Supply { viscosity, lubrication, replenishment, dry_share }
     }

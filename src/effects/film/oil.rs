@@ -1,5 +1,7 @@
 //! Viscosity of an oil at its temperature.
 
+use crate::numerics::elementary::{ln, pow};
+
 /// \[K] absolute temperature of 0 degC.
 const ZERO_CELSIUS: f64 = 273.15;
 /// \[K] temperature of ISO viscosity grades.
@@ -56,7 +58,7 @@ impl Oil {
             Self::Graded(grade, _) => {
                 // d ln(nu)/dT of lg lg(nu + 0.7) = A - B lg T.
                 let shifted = kinematic(grade, temperature) + 0.7;
-                let growth = slope(grade) * shifted.ln() / (temperature + ZERO_CELSIUS);
+                let growth = slope(grade) * ln(shifted) / (temperature + ZERO_CELSIUS);
                 Some(growth * shifted / (shifted - 0.7))
             }
         }
@@ -66,16 +68,17 @@ impl Oil {
 /// [mm2/s] kinematic viscosity of a grade at a temperature \[degC]: Walther's law `lg lg(nu + 0.7) = A - B lg T` (ASTM D341).
 fn kinematic(grade: f64, temperature: f64) -> f64 {
     let absolute = temperature + ZERO_CELSIUS;
-    let at_grade = (grade + 0.7).log10().log10();
-    let log_log = at_grade - slope(grade) * (absolute / GRADE_TEMPERATURE).log10();
+    let log10 = |x: f64| ln(x) / std::f64::consts::LN_10;
+    let at_grade = log10(log10(grade + 0.7));
+    let log_log = at_grade - slope(grade) * log10(absolute / GRADE_TEMPERATURE);
     // Below 0.2 mm2/s the law ends: no oil is as thin.
-    (10f64.powf(10f64.powf(log_log)) - 0.7).max(0.2)
+    (pow(10.0, pow(10.0, log_log)) - 0.7).max(0.2)
 }
 
 /// Slope of Walther's law of a grade, between those of the table by the logarithm of the grade.
 fn slope(grade: f64) -> f64 {
     let next = SLOPES.partition_point(|&(listed, _)| listed <= grade).clamp(1, SLOPES.len() - 1);
     let ((g0, b0), (g1, b1)) = (SLOPES[next - 1], SLOPES[next]);
-    let share = ((grade / g0).ln() / (g1 / g0).ln()).clamp(0.0, 1.0);
+    let share = (ln(grade / g0) / ln(g1 / g0)).clamp(0.0, 1.0);
     b0 + (b1 - b0) * share
 }

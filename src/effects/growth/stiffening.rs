@@ -8,6 +8,7 @@
 
 use crate::contact::hertz::HertzContact;
 use crate::contact::raceway::Raceway;
+use crate::numerics::elementary::{exp, ln};
 
 /// Logarithm of the stiffness over that of cold dimensions, as a polynomial.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,12 +33,12 @@ impl Stiffening {
     pub fn new(ball: f64, raceway: &Raceway, circumferential: f64) -> Self {
         let transverse = 1.0 / ball - 1.0 / raceway.groove_radius;
         let stiffness = |u: f64, w: f64| {
-            let rolling = 1.0 / (ball * u.exp()) + circumferential;
+            let rolling = 1.0 / (ball * exp(u)) + circumferential;
             // Elastic constants drop out of the ratio.
-            HertzContact::new(rolling, transverse * w.exp(), 1e-11).stiffness
+            HertzContact::new(rolling, transverse * exp(w), 1e-11).stiffness
         };
         let cold = stiffness(0.0, 0.0);
-        let at = |i: f64, k: f64| (stiffness(i * BALL_STEP, k * CURVATURE_STEP) / cold).ln();
+        let at = |i: f64, k: f64| ln(stiffness(i * BALL_STEP, k * CURVATURE_STEP) / cold);
         let second = |plus: f64, minus: f64, step: f64| (plus + minus) / (step * step);
         let mixed = at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0);
         Self {
@@ -57,11 +58,11 @@ impl Stiffening {
 
     /// [-] stiffness over the cold one, of a ball and a groove of these radii \[m]; 1 to the bit for cold ones.
     pub fn at(&self, ball: f64, groove: f64) -> f64 {
-        let u = (ball / self.ball).ln();
-        let w = ((1.0 / ball - 1.0 / groove) / self.transverse).ln();
+        let u = ln(ball / self.ball);
+        let w = ln((1.0 / ball - 1.0 / groove) / self.transverse);
         let [by_ball, by_curvature] = self.slopes;
         let [uu, uw, ww] = self.bends;
-        (by_ball * u + by_curvature * w + 0.5 * (uu * u * u + ww * w * w) + uw * u * w).exp()
+        exp(by_ball * u + by_curvature * w + 0.5 * (uu * u * u + ww * w * w) + uw * u * w)
     }
 }
 

@@ -19,6 +19,7 @@ use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::keys::Keys;
 use super::reports::LoadRests;
 use crate::contact::materials::Pair;
+use crate::numerics::elementary::pow;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::{Force, KinematicViscosity};
 use crate::schema::variable_units::{NEWTON, ONE, Unit};
@@ -192,7 +193,7 @@ impl Rating {
                 // Balls without load are many, and a power of 0 is 0.
                 if of_ball[race] > 0.0 {
                     for (power, exponent) in rates.powers[race].iter_mut().zip(EXPONENTS) {
-                        *power += of_ball[race].powf(exponent);
+                        *power += pow(of_ball[race], exponent);
                     }
                 }
             }

@@ -45,31 +45,34 @@ pub struct Arrowhead {
 }
 
 impl Arrowhead {
-    /// Adds what the blocks leave to the border's own matrix: what remains when they are eliminated. `shared` is the border row of the
+    /// Puts members and blocks where they are now, with turns of the blocks since they were eliminated. `shared` is the border row of the
     /// unknown that they share.
-    pub fn reduce<'a>(
+    pub fn place(
         &mut self,
-        blocks: impl Iterator<Item = (&'a Eliminated, OrbitTurn<Lanes>)>,
+        turns: impl Iterator<Item = OrbitTurn<Lanes>>,
         (members, shared): (&[Member], Option<usize>),
-        border: &mut DMatrix<f64>,
     ) {
         self.shared = shared;
-        self.shared_sums.clear();
-        self.shared_sums.resize(shared.map_or(0, |_| members.len()), [NO_BLOCKS[0]; 2]);
-        let mut rest = NO_BLOCKS[0][0];
         self.members.clear();
         self.members.extend(members);
         self.turns.clear();
+        self.turns.extend(turns);
+    }
+
+    /// Adds what the blocks leave to the border's own matrix: what remains when they are eliminated; after [`Arrowhead::place`].
+    pub fn reduce<'a>(&mut self, blocks: impl Iterator<Item = &'a Eliminated>, border: &mut DMatrix<f64>) {
+        let Self { members, turns, sums, shared_sums, shared, .. } = self;
+        shared_sums.clear();
+        shared_sums.resize(shared.map_or(0, |_| members.len()), [NO_BLOCKS[0]; 2]);
+        let mut rest = NO_BLOCKS[0][0];
         let count = members.len();
-        let sums = &mut self.sums;
         sums.clear();
         sums.resize(count * count, NO_BLOCKS);
-        for (blocks, turn) in blocks {
-            self.turns.push(turn);
-            add_rest(blocks, &turn, sums);
+        for (blocks, turn) in blocks.zip(&*turns) {
+            add_rest(blocks, turn, sums);
             if let Some(shared) = &blocks.shared {
                 rest += shared.rest;
-                add_shared_rest(shared, &turn, &mut self.shared_sums);
+                add_shared_rest(shared, turn, shared_sums);
             }
         }
         for (row, a) in members.iter().enumerate() {
@@ -81,9 +84,9 @@ impl Arrowhead {
                 view += rest;
             }
         }
-        if let Some(place) = shared {
+        if let Some(place) = *shared {
             border[(place, place)] += sum_of_lanes(&rest);
-            for (member, sums) in members.iter().zip(&self.shared_sums) {
+            for (member, sums) in members.iter().zip(&*shared_sums) {
                 let [in_row, in_column] =
                     sums.map(|six| member.own(&Vector6::from_fn(|i, _| sum_of_lanes(&six[i]))));
                 let mut row = border.fixed_view_mut::<1, BLOCK>(place, member.from);

@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use strum::IntoStaticStr;
 
+use crate::numerics::elementary::{exp, pow};
 use crate::numerics::scalar::Scalar;
 
 /// How much of a contact is dry.
@@ -52,8 +53,8 @@ impl MixedFriction {
         match self {
             Self::OlverSpikes | Self::Erf => 0.0,
             Self::Skf => {
-                let full = 2.6e-8 * (speed * viscosity).powf(1.4) * mean_diameter * 1e3;
-                (-full * lubrication.powi(2)).exp()
+                let full = 2.6e-8 * pow(speed * viscosity, 1.4) * mean_diameter * 1e3;
+                exp(-full * lubrication.powi(2))
             }
         }
     }

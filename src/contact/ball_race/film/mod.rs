@@ -8,14 +8,13 @@
 //! its shape that at the free contact angle: between the shapes at 0 and 40 degrees rolling resistance changes by 2.2 %, friction by
 //! 0.3 % (6206, tests/contact/film.rs).
 
-mod functions;
 pub mod mixed;
 pub mod rolling;
 pub mod thickness;
 pub mod traction;
 
+use crate::numerics::elementary::ln;
 use crate::numerics::scalar::{Dual, Scalar, SmoothMap, Values};
-use functions::ln;
 use mixed::MixedFriction;
 use rolling::Inlet;
 use thickness::Ellipse;
@@ -69,7 +68,7 @@ pub struct RacewayFilm {
 impl RacewayFilm {
     /// Films of an oil in contacts of a modulus E' \[Pa] and a shape.
     pub fn new(lubricant: Lubricant, modulus: f64, ellipse: Ellipse) -> Self {
-        Self { lubricant, modulus, stiffening: (lubricant.pressure_viscosity * modulus).ln(), ellipse }
+        Self { lubricant, modulus, stiffening: ln(lubricant.pressure_viscosity * modulus), ellipse }
     }
 }
 
@@ -149,7 +148,7 @@ impl<'a> Film<'a> {
         let Lubricant { temperature_viscosity, conductivity, .. } = raceway.lubricant;
         let viscosity = supply.viscosity;
         let logarithms =
-            [viscosity / raceway.modulus, viscosity * temperature_viscosity / conductivity].map(f64::ln);
+            [viscosity / raceway.modulus, viscosity * temperature_viscosity / conductivity].map(ln);
         Self { raceway, supply, dry_friction, logarithms }
     }
 }

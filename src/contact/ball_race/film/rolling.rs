@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::functions::exp;
+use crate::numerics::elementary::{exp, pow};
 use crate::numerics::scalar::Scalar;
 
 /// Factors that follow from the shape of the ellipse alone.
@@ -22,9 +22,9 @@ impl RollingFactors {
     /// Factors of an axis ratio kappa and a slenderness beta.
     pub fn new(ratio: f64, slenderness: f64) -> Self {
         Self {
-            rigid: 0.77 * slenderness.powf(-1.0 / 3.0) * ratio.powf(0.12),
-            elastic: 1.8 * slenderness.powf(-0.25),
-            share: slenderness.powf(0.25) * ratio / 6.6,
+            rigid: 0.77 * pow(slenderness, -1.0 / 3.0) * pow(ratio, 0.12),
+            elastic: 1.8 * pow(slenderness, -0.25),
+            share: pow(slenderness, 0.25) * ratio / 6.6,
             width: 2.0 / (PI * ratio).sqrt(),
         }
     }

@@ -1,7 +1,7 @@
 //! Thickness of films in elliptic contacts.
 
-use super::functions::{exp, ln};
 use super::rolling::RollingFactors;
+use crate::numerics::elementary::{exp, ln};
 use crate::numerics::scalar::Scalar;
 
 /// [-] load over `E' R^2` below which films do not grow any more: without load they would be infinite.
@@ -31,7 +31,7 @@ impl Ellipse {
         let pressure = 1.5 * load / (std::f64::consts::PI * along * across);
         let slenderness = along * modulus * curvature / (std::f64::consts::PI * pressure);
         Self {
-            films: [1.0 - 0.61 * (-0.73 * ellipticity).exp(), 1.0 - (-0.68 * ellipticity).exp()],
+            films: [1.0 - 0.61 * exp(-0.73 * ellipticity), 1.0 - exp(-0.68 * ellipticity)],
             ratio,
             slenderness,
             rolling: RollingFactors::new(ratio, slenderness),
@@ -58,7 +58,7 @@ pub fn inlet_factor<S: Scalar>(pressure: S, logarithm: S) -> S {
     let left = loss.map_smooth(|loss| match loss <= LARGEST_LOSS {
         true => (1.0 - loss, -1.0),
         false => {
-            let left = (1.0 - LARGEST_LOSS) * ((LARGEST_LOSS - loss) / (1.0 - LARGEST_LOSS)).exp();
+            let left = (1.0 - LARGEST_LOSS) * exp((LARGEST_LOSS - loss) / (1.0 - LARGEST_LOSS));
             (left, -left / (1.0 - LARGEST_LOSS))
         }
     });

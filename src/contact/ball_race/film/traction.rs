@@ -4,7 +4,7 @@ use serde::Deserialize;
 use strum::IntoStaticStr;
 
 use super::Lubricant;
-use super::functions::{exp, ln};
+use crate::numerics::elementary::{asinh, exp, ln};
 use crate::numerics::scalar::Scalar;
 
 /// \[Pa] pressure of Roelands' law.
@@ -53,7 +53,7 @@ impl Lubricant {
     /// [Pa s] viscosity under a pressure \[Pa] of one without pressure [Pa s] (Roelands 1966).
     #[inline(always)]
     pub fn viscosity_under<S: Scalar>(&self, viscosity: f64, pressure: S) -> S {
-        let growth = viscosity.ln() + ROELANDS_POLE;
+        let growth = ln(viscosity) + ROELANDS_POLE;
         let exponent = self.pressure_viscosity * ROELANDS_PRESSURE / growth;
         let power = exp(ln(pressure.scale(1.0 / ROELANDS_PRESSURE) + S::one()).scale(exponent));
         exp((power - S::one()).scale(growth).clamp_to(0.0, LARGEST_GROWTH)).scale(viscosity)
@@ -98,10 +98,7 @@ impl Lubricant {
     #[inline(always)]
     pub fn shear_under<S: Scalar>(&self, viscosity: f64, pressure: S, rate: S) -> Shear<S> {
         let viscous = self.viscosity_under(viscosity, pressure) * rate;
-        let thinned = viscous
-            .scale(1.0 / self.eyring_stress)
-            .map_smooth(|x| (x.asinh(), 1.0 / x.hypot(1.0)))
-            .scale(self.eyring_stress);
+        let thinned = asinh(viscous.scale(1.0 / self.eyring_stress)).scale(self.eyring_stress);
         let limit = pressure.scale(self.limiting_shear);
         let stress = thinned.where_positive(limit - thinned, limit);
         Shear { friction: stress / (pressure + S::constant(LEAST_PRESSURE)), thinning: stress / viscous }
