@@ -3,10 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
+use std::path::Path;
 
 use roulement::catalogue::{Bearing, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, TABLE};
 use roulement::effects::rating::standard::Geometry;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
+use roulement::scene::system::SystemScene;
 use roulement::simulation::Simulation;
 use roulement::{Model, Scene};
 
@@ -174,6 +176,25 @@ fn scenes_of_both_kinds_run() {
         let force = simulation.outputs().inner.wrench.force;
         assert!(force.norm().is_finite() && force.norm() > 0.0, "{name}: {force}");
     }
+}
+
+/// Balls of a bearing alone are kept apart. Those of a machine are not unless it says so, in a housing or in the ground: a shaft's vibrations
+/// would be damped too much.
+#[test]
+fn scenes_have_an_ideal_cage_and_bearings_of_machines_none_unless_they_say_so() {
+    let scene = Scene::parse(&bearing("6206").scene(1).unwrap()).unwrap();
+    assert!(scene.effects.cage.is_ideal());
+    let machine = |set: &str| {
+        let text = format!(
+            "[shaft]\nspeed = \"3000 rpm\"\nmass = \"1 kg\"\npolar_inertia = 1e-3\ntransverse_inertia = 2e-3\n[[bearing]]\nname = \"a\"\n\
+             catalogue = \"6206\"\nmounting = {{ position = \"0 mm\" }}\n{set}\n[[bearing]]\nname = \"b\"\ncatalogue = \"6206\"\n\
+             mounting = {{ position = \"80 mm\", axial = \"free\" }}\n[load]\nduration = \"1 ms\"\noutput_interval = \"1 ms\"\n"
+        );
+        let scene = SystemScene::parse(&text, None, Path::new("")).unwrap();
+        scene.bearings.iter().map(|of| of.scene.effects.cage.is_ideal()).collect::<Vec<_>>()
+    };
+    assert_eq!(machine(""), [false, false]);
+    assert_eq!(machine("set = { effects = { cage = \"ideal\" } }"), [true, false]);
 }
 
 #[test]

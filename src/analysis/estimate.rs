@@ -231,7 +231,7 @@ fn judge(
     };
     let of = |twin: Twin| {
         // What changes contact angles or friction changes how balls push a cage, and that is no part of a settled state.
-        let threshold = match (estimate.caged, twin.unsettled) {
+        let threshold = match (estimate.caged, twin.unsettled.is_some()) {
             (true, _) => CAGED * estimate.threshold,
             (false, true) => unsettled(estimate.threshold),
             (false, false) => estimate.threshold,
@@ -258,6 +258,12 @@ fn judge(
         let tail = film.filter(|_| twin.subject == FILM).map_or(String::new(), |ratio| {
             format!("; film {} times the roughness at the most loaded ball", digits(ratio))
         });
+        // What is said not to matter may do so beside that.
+        let idle = !twin.always_matters && changes.largest().is_none_or(|(_, most)| most.abs() <= threshold);
+        let tail = match twin.unsettled {
+            Some(unseen) if idle => format!("{tail}; {unseen}"),
+            _ => tail,
+        };
         Verdict::of_twin(&twin, changes, threshold, &tail)
     };
     let mut verdicts: Vec<Verdict> =

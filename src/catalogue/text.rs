@@ -141,6 +141,7 @@ impl Bearing {
             format!("static_load_rating = \"{static_} kN\""),
             String::new(),
             "[effects]".into(),
+            "cage = \"ideal\"                # chosen: balls at even spacing; with \"none\" they touch where they meet".into(),
             "damping = \"0.02 s/m\"           # estimated: bouncing of balls ends within about 1 ms; spread a factor of 3".into(),
             String::new(),
             "[inner]".into(),

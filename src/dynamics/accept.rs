@@ -288,10 +288,11 @@ impl Workspace {
                 let after = unknowns.fixed_rows::<3>(from).into_owned();
                 step.local_error(&before, &after).norm_squared()
             };
-            let along = self.spacing.as_ref().zip(self.groups.apart(index)).map_or(0.0, |(trial, apart)| {
-                let [before, after] = trial.accelerations().map(|turn| apart.along_orbit(&unknowns) * turn);
-                step.local_error(&before, &after).norm_squared()
-            });
+            let along =
+                self.spacing.as_ref().zip(self.groups.along_orbit(index)).map_or(0.0, |(trial, along)| {
+                    let [before, after] = trial.accelerations().map(|turn| along * turn);
+                    step.local_error(&before, &after).norm_squared()
+                });
             change(0, state.acceleration) + change(3, state.angular_acceleration * ball.radius) + along
         };
         let sum = start.iter().enumerate().map(square).fold(0.0, |sum, square| sum + square);

@@ -116,7 +116,7 @@ impl<'a> BearingStep<'a> {
         let Workspace { bodies, races, cage, spacing, groups, .. } = &mut *self.workspace;
         if let (Some(trial), Some(row)) = (spacing, self.model.spacing_row()) {
             moved |= trial.move_to(border[row], &self.step, length);
-            groups.turn(&trial.turn());
+            groups.turn(&trial.turn);
         }
         for ((body, trial), (_, start)) in bodies.iter_mut().zip(self.start.bodies.iter()) {
             if let (Some(trial), Some(from)) = (trial, offsets[body.index()]) {
@@ -176,7 +176,9 @@ impl<'a> BearingStep<'a> {
                 }
             }
             if let Some(apart) = workspace.groups.apart(index) {
-                apart.share(&mut trial.block, &workspace.groups.unknowns(index), length);
+                let moved = workspace.bodies.iter().filter(|(_, trial)| trial.is_some());
+                let slots = moved.map(|(body, _)| body.index());
+                apart.share(&mut trial.block, &workspace.groups.unknowns(index), slots, length);
             }
         }
     }
@@ -242,7 +244,8 @@ impl<'a> BearingStep<'a> {
         let Workspace { spacing, groups, .. } = &mut *self.workspace;
         if let Some(trial) = spacing {
             trial.assemble(groups, &self.step, self.model.race_length());
-            norm = larger(norm, trial.residual.abs() / self.force_tolerance);
+            // All balls leave something in it: each is held to its own tolerance, whatever their number.
+            norm = larger(norm, trial.each.abs() / self.force_tolerance);
         }
         norm
     }

@@ -158,11 +158,8 @@ impl Groups {
         (ball, step): (&Ball, &HhtStep),
     ) {
         let of_groups = balls.chunks(WIDTH).zip(azimuths.chunks(WIDTH));
-        for (group, (balls, azimuths)) in self.0.iter_mut().zip(of_groups) {
-            let lane = |lane: usize| (lane_of(balls, lane), *lane_of(azimuths, lane));
-            let zero = Lanes::constant(0.0);
-            let share = Share { inertia: zero, moment: zero, radius: zero };
-            group.apart = Some((Apart::of_lanes(lane, trial, ball.mass, step), share));
+        for (group, of_group) in self.0.iter_mut().zip(of_groups) {
+            begin_apart_lanes(of_group, trial, (ball.mass, step), &mut group.apart);
         }
     }
 
@@ -177,14 +174,15 @@ impl Groups {
         group.apart.as_ref().map(|(apart, _)| apart.in_lane(lane))
     }
 
-    /// Share of a ball in the turn of an ideal cage.
-    pub fn share(&self, ball: usize) -> Option<Share<f64>> {
+    /// Shares of the balls in the turn of an ideal cage, group by group.
+    pub fn shares(&self) -> impl Iterator<Item = &Share<Lanes>> {
+        self.0.iter().filter_map(|group| group.apart.as_ref().map(|(_, share)| share))
+    }
+
+    /// [m/s2] acceleration of a ball along its orbit by that of the turn of an ideal cage [rad/s2].
+    pub fn along_orbit(&self, ball: usize) -> Option<Vector3<f64>> {
         let (group, lane) = self.place(ball);
-        let of = |Share { inertia, moment, radius }: &Share<Lanes>| {
-            let [inertia, moment, radius] = [inertia, moment, radius].map(|of| of.0[lane]);
-            Share { inertia, moment, radius }
-        };
-        group.apart.as_ref().map(|(_, share)| of(share))
+        group.apart.as_ref().map(|(apart, share)| apart.along(lane) * share.radius.0[lane])
     }
 
     /// Moves one ball somewhere else.
@@ -372,6 +370,20 @@ fn move_to_lanes(
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 fn move_lanes(equations: &BallEquations<Lanes>, unknowns: &Six<Lanes>, motion: &mut BallMotion<Lanes>) {
     *motion = equations.motion(unknowns);
+}
+
+/// Balls of a group at the start of a step in which an ideal cage keeps them apart, by their azimuths.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn begin_apart_lanes(
+    (balls, azimuths): (&[BallState], &[[f64; 2]]),
+    trial: &SpacingTrial,
+    (mass, step): (f64, &HhtStep),
+    apart: &mut Option<(Apart<Lanes>, Share<Lanes>)>,
+) {
+    let lane = |lane: usize| (lane_of(balls, lane), *lane_of(azimuths, lane));
+    let zero = Lanes::constant(0.0);
+    let share = Share { inertia: zero, moment: zero, radius: zero };
+    *apart = Some((Apart::new(lane, trial, mass, step), share));
 }
 
 /// Puts balls where an ideal cage keeps them.

@@ -91,10 +91,11 @@ impl BearingStep<'_> {
                 }
                 None => [start.acceleration, start.angular_acceleration * radius],
             };
-            if let (Some(trial), Some(apart)) = (&self.workspace.spacing, self.workspace.groups.apart(index))
+            if let (Some(trial), Some(along)) =
+                (&self.workspace.spacing, self.workspace.groups.along_orbit(index))
             {
                 // Its share of the turn.
-                let (along, [before, after]) = (apart.along_orbit(&unknowns), trial.accelerations());
+                let [before, after] = trial.accelerations();
                 starts[0] += along * before;
                 ends[0] += along * after;
             }

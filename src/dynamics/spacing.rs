@@ -7,7 +7,7 @@
 //! m x'' = F_x,   m r'' = F_r + m r phi'^2,   sum of m r^2 phi'' = sum of r (F_t - 2 m r' phi')
 //! ```
 //! Of the six unknowns and rows of a ball those along the orbit are of no use: the unknown there is 0. What they would be is a share of the
-//! turn's, which all balls have in common ([`Shared`]). The force of its pocket is what a ball lacks of its share.
+//! turn's, which all balls have in common ([`Shared`]). The force of its pocket is what a ball lacks of its share ([`SpacingTrial::press`]).
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -20,7 +20,7 @@ use crate::model::spacing::{CommonTurn, Directions, Spacing, wrapped};
 use crate::model::state::{BallState, State};
 use crate::numerics::arrowhead::{Block, SLOTS, Shared, Six};
 use crate::numerics::hht::HhtStep;
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::motion::Wrench;
 use crate::numerics::scalar::Scalar;
 
@@ -92,15 +92,16 @@ fn along<S: Scalar>([c, s]: [S; 2], y: S, z: S) -> [S; 2] {
 impl<S: Scalar> Apart<S> {
     /// Balls of one lane each, which `lane` gives with their azimuths.
     #[inline(always)]
-    fn new<'a>(
+    pub fn new<'a>(
         lane: impl Fn(usize) -> (&'a BallState, [f64; 2]),
-        (start, ahead, turn): (&CommonTurn, (f64, f64), Turn),
-        (mass, step): (f64, &HhtStep),
+        trial: &SpacingTrial,
+        mass: f64,
+        step: &HhtStep,
     ) -> Self {
-        let (sin, cos) = start.angle.sin_cos();
+        let SpacingTrial { start, turned: (sin, cos), ahead, turn, .. } = trial;
         let component = |of: fn(&BallState) -> f64| S::by_lane(|index| of(lane(index).0));
         let azimuth = [0, 1].map(|k| S::by_lane(|index| lane(index).1[k]));
-        let at = turned(azimuth, cos, sin);
+        let at = turned(azimuth, *cos, *sin);
         let constant = S::constant;
         let radial = |y: S, z: S| along(at, y, z)[0];
         let radius = radial(
@@ -127,7 +128,7 @@ impl<S: Scalar> Apart<S> {
                 component(|ball| ball.remainder.force.y),
                 component(|ball| ball.remainder.force.z),
             ),
-            turn,
+            turn: *turn,
         }
     }
 
@@ -184,20 +185,16 @@ impl<S: Scalar> Apart<S> {
 }
 
 impl Apart<Lanes> {
-    /// Those of a group, by the balls and azimuths of their lanes.
-    #[inline(always)]
-    pub fn of_lanes<'a>(
-        lane: impl Fn(usize) -> (&'a BallState, [f64; 2]),
-        trial: &SpacingTrial,
-        mass: f64,
-        step: &HhtStep,
-    ) -> Self {
-        Self::new(lane, (&trial.start, trial.ahead.sin_cos(), trial.turn()), (mass, step))
-    }
-
     /// Goes on with another turn.
     pub fn follow(&mut self, turn: &Turn) {
         self.turn = *turn;
+    }
+
+    /// Unit vector along the orbit of the ball in a lane, where it is expected at the end.
+    #[inline]
+    pub fn along(&self, lane: usize) -> Vector3<f64> {
+        let [c, s] = self.ahead.map(|of| of.0[lane]);
+        Vector3::new(0.0, -s, c)
     }
 
     /// That in a lane.
@@ -218,28 +215,28 @@ impl Apart<Lanes> {
 }
 
 impl Apart<f64> {
-    /// Its directions: the axes of unknowns and residuals.
-    fn directions(&self) -> Directions {
+    /// The axes of unknowns and residuals: along the radius and along the orbit.
+    fn axes(&self) -> [Across; 2] {
         let [c, s] = self.ahead;
-        Directions { radial: Vector3::new(0.0, c, s), tangential: Vector3::new(0.0, -s, c) }
-    }
-
-    /// [m/s2] acceleration along the orbit by that of the turn [rad/s2].
-    pub fn along_orbit(&self, unknowns: &Vector6<f64>) -> Vector3<f64> {
-        self.directions().tangential * self.placed(&(*unknowns).into()).radius
+        [Across([c, s]), Across([-s, c])]
     }
 
     /// Goes from the tangent of a ball that is free, by its acceleration, to that of one that is kept in its place, with its couplings to
-    /// bodies and to the turn, whose unknown is an acceleration times `length` \[m].
-    pub fn share(&self, block: &mut Block, unknowns: &Vector6<f64>, length: f64) {
-        let Directions { radial, tangential } = self.directions();
-        let [out, on] = [radial, tangential].map(|v| Vector6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0));
+    /// the bodies in some slots and to the turn, whose unknown is an acceleration times `length` \[m].
+    pub fn share(
+        &self,
+        block: &mut Block,
+        unknowns: &Vector6<f64>,
+        slots: impl Iterator<Item = usize>,
+        length: f64,
+    ) {
+        let [out, on] = self.axes();
         let Placed { radius, rate, .. } = self.placed(&(*unknowns).into());
         let scale = radius / length;
         let Block { diagonal, right, left, shared, .. } = block;
         self.lean(diagonal, &out, &on);
         let lean = self.velocity_by_radius();
-        let (column, row) = (*diagonal * on, diagonal.tr_mul(&on));
+        let (column, row) = (on.column_of(diagonal), on.row_of(diagonal));
         let own = on.dot(&column);
         // What inertia forces of the turn's rate add.
         let gain = (1.0 - self.step.alpha_f) * 2.0 * self.mass * self.step.velocity_gain();
@@ -247,30 +244,31 @@ impl Apart<f64> {
         let forward = gain * rate / length;
         let mut right_of_turn = [Vector6::zeros(); SLOTS];
         let mut left_of_turn = right_of_turn;
-        for slot in 0..SLOTS {
-            let of_turn = left[slot] * on;
-            left[slot] += of_turn * (out * lean - on).transpose();
+        for slot in slots {
+            let of_turn = on.column_of(&left[slot]);
+            out.add_to_columns(&mut left[slot], &(of_turn * lean));
+            on.add_to_columns(&mut left[slot], &-of_turn);
             left_of_turn[slot] = of_turn * scale;
-            let of_turn = right[slot].tr_mul(&on);
-            right[slot] -= on * of_turn.transpose();
+            let of_turn = on.row_of(&right[slot]);
+            on.add_to_rows(&mut right[slot], &-of_turn);
             right_of_turn[slot] = of_turn * scale;
         }
         *shared = Shared {
-            column: (column - on * own) * scale + out * outward,
-            row: (row - on * own) * scale,
+            column: (column - on.times(own)) * scale + out.times(outward),
+            row: (row - on.times(own)) * scale,
             own: scale * (scale * own + forward),
             right: right_of_turn,
             left: left_of_turn,
         };
-        *diagonal = self.without_orbit(diagonal, &on);
+        self.leave_orbit(diagonal, &on);
     }
 
     /// The tangent of a ball that is kept in its place, with the turn as it is.
     pub fn tangent_alone(&self, mut tangent: Matrix6<f64>) -> Matrix6<f64> {
-        let Directions { radial, tangential } = self.directions();
-        let [out, on] = [radial, tangential].map(|v| Vector6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0));
+        let [out, on] = self.axes();
         self.lean(&mut tangent, &out, &on);
-        self.without_orbit(&tangent, &on)
+        self.leave_orbit(&mut tangent, &on);
+        tangent
     }
 
     /// [-] velocity along the orbit by that along the radius, both by the acceleration along the radius.
@@ -279,39 +277,91 @@ impl Apart<f64> {
     }
 
     /// Adds to the column of the radius that a ball farther out is faster, and its inertia forces.
-    fn lean(&self, tangent: &mut Matrix6<f64>, out: &Vector6<f64>, on: &Vector6<f64>) {
+    fn lean(&self, tangent: &mut Matrix6<f64>, out: &Across, on: &Across) {
         let Self { step, mass, turn, .. } = self;
         let fraction = 1.0 - step.alpha_f;
         // Forces by the velocity along the orbit: what its column has beside the mass. The place there changes them by less than 1e-3 of that.
-        let faster = (*tangent * on - on * *mass) * self.velocity_by_radius();
-        let outward = out * (-fraction * mass * turn.speed * turn.speed * step.position_gain());
-        let forward = on * (fraction * 2.0 * mass * turn.speed * step.velocity_gain());
-        *tangent += (faster + outward + forward) * out.transpose();
+        let faster = (on.column_of(tangent) - on.times(*mass)) * self.velocity_by_radius();
+        let outward = out.times(-fraction * mass * turn.speed * turn.speed * step.position_gain());
+        let forward = on.times(fraction * 2.0 * mass * turn.speed * step.velocity_gain());
+        out.add_to_columns(tangent, &(faster + outward + forward));
     }
 
-    /// A tangent without the row and column along the orbit, where the mass alone is left.
-    fn without_orbit(&self, tangent: &Matrix6<f64>, on: &Vector6<f64>) -> Matrix6<f64> {
-        let (column, row) = (*tangent * on, tangent.tr_mul(on));
+    /// Empties the row and column along the orbit of a tangent, where the mass alone is left.
+    fn leave_orbit(&self, tangent: &mut Matrix6<f64>, on: &Across) {
+        let (column, row) = (on.column_of(tangent), on.row_of(tangent));
         let own = on.dot(&column);
-        tangent - column * on.transpose() - on * row.transpose() + on * on.transpose() * (own + self.mass)
+        on.add_to_columns(tangent, &(on.times(own + self.mass) - column));
+        on.add_to_rows(tangent, &-row);
+    }
+}
+
+/// A unit vector across the axis among the six unknowns of a ball: of all six, those along y and z are not 0.
+#[derive(Clone, Copy, Debug)]
+struct Across([f64; 2]);
+
+impl Across {
+    /// A multiple of it.
+    fn times(&self, factor: f64) -> Vector6<f64> {
+        let [y, z] = self.0;
+        Vector6::new(0.0, y * factor, z * factor, 0.0, 0.0, 0.0)
+    }
+
+    /// Its product with a vector.
+    fn dot(&self, other: &Vector6<f64>) -> f64 {
+        let [y, z] = self.0;
+        y * other[1] + z * other[2]
+    }
+
+    /// A matrix times it.
+    fn column_of(&self, matrix: &Matrix6<f64>) -> Vector6<f64> {
+        let [y, z] = self.0;
+        matrix.column(1) * y + matrix.column(2) * z
+    }
+
+    /// The transpose of a matrix times it.
+    fn row_of(&self, matrix: &Matrix6<f64>) -> Vector6<f64> {
+        let [y, z] = self.0;
+        Vector6::from_fn(|k, _| y * matrix[(1, k)] + z * matrix[(2, k)])
+    }
+
+    /// Adds `vector` times its transpose.
+    fn add_to_columns(&self, matrix: &mut Matrix6<f64>, vector: &Vector6<f64>) {
+        for (k, number) in self.0.into_iter().enumerate() {
+            let mut column = matrix.column_mut(1 + k);
+            column += vector * number;
+        }
+    }
+
+    /// Adds it times the transpose of `vector`.
+    fn add_to_rows(&self, matrix: &mut Matrix6<f64>, vector: &Vector6<f64>) {
+        let [y, z] = self.0;
+        for (k, number) in vector.iter().enumerate() {
+            matrix[(1, k)] += y * number;
+            matrix[(2, k)] += z * number;
+        }
     }
 }
 
 /// The common turn in a trial step.
 #[derive(Clone, Debug)]
 pub struct SpacingTrial {
-    /// At the start.
+    /// At the start, without its pockets.
     start: CommonTurn,
+    /// Sine and cosine of its angle.
+    turned: (f64, f64),
     /// At the end.
     pub end: CommonTurn,
+    /// The same, as balls follow it.
+    pub turn: Turn,
     /// [m/s2] unknown: angular acceleration times the race length.
     unknown: f64,
     /// \[N] residual: moment over the race length.
     pub residual: f64,
-    /// \[rad] angle that is expected at the end.
-    ahead: f64,
-    /// [m/s2] mean acceleration of the centre in the step.
-    drift: Vector3<f64>,
+    /// \[N] share of each ball in it.
+    pub each: f64,
+    /// Sine and cosine of the angle that is expected at the end.
+    ahead: (f64, f64),
 }
 
 impl SpacingTrial {
@@ -319,13 +369,26 @@ impl SpacingTrial {
     pub fn new(start: &CommonTurn, boundary: &Boundary, step: &HhtStep) -> Self {
         let mut end = start.clone();
         (end.centre, end.velocity) = centre(boundary);
+        let ahead = start.angle + (start.speed + 0.5 * start.acceleration * step.h) * step.h;
+        let turned = start.angle.sin_cos();
+        let across = |v: &Vector3<f64>| [v.y, v.z];
+        let turn = Turn {
+            cos: turned.1,
+            sin: turned.0,
+            speed: start.speed,
+            centre: across(&end.centre),
+            velocity: across(&end.velocity),
+            drift: across(&((end.velocity - start.velocity) / step.h)),
+        };
         Self {
-            ahead: start.angle + (start.speed + 0.5 * start.acceleration * step.h) * step.h,
-            drift: (end.velocity - start.velocity) / step.h,
-            start: start.clone(),
+            ahead: ahead.sin_cos(),
+            start: CommonTurn { pockets: vec![], ..*start },
+            turned,
             end,
+            turn,
             unknown: f64::NAN,
             residual: 0.0,
+            each: 0.0,
         }
     }
 
@@ -338,37 +401,35 @@ impl SpacingTrial {
         self.end.angle = wrapped(self.start.angle + (self.start.speed + mean * h) * h);
         self.end.speed = self.start.speed + (before * (1.0 - step.gamma) + after * step.gamma) * h;
         self.end.acceleration = after;
+        (self.turn.sin, self.turn.cos) = self.end.angle.sin_cos();
+        self.turn.speed = self.end.speed;
         changed
-    }
-
-    /// As balls follow it.
-    pub fn turn(&self) -> Turn {
-        let (sin, cos) = self.end.angle.sin_cos();
-        let across = |v: &Vector3<f64>| [v.y, v.z];
-        Turn {
-            cos,
-            sin,
-            speed: self.end.speed,
-            centre: across(&self.end.centre),
-            velocity: across(&self.end.velocity),
-            drift: across(&self.drift),
-        }
     }
 
     /// Sums what the balls add to its equation.
     pub fn assemble(&mut self, groups: &Groups, step: &HhtStep, length: f64) {
-        let balls = self.end.pockets.len();
-        let shares = || (0..balls).filter_map(|ball| groups.share(ball));
-        let inertia = shares().fold(0.0, |sum, share| sum + share.inertia);
-        let moment = shares().fold(0.0, |sum, share| sum + share.moment);
         let Self { start, end, .. } = self;
+        let balls = end.pockets.len();
+        let (mut inertia, mut moment) = (0.0, 0.0);
+        for (index, share) in groups.shares().enumerate() {
+            for lane in 0..WIDTH.min(balls - WIDTH * index) {
+                inertia += share.inertia.0[lane];
+                moment += share.moment.0[lane];
+            }
+        }
         end.total = moment / inertia;
         end.remainder = end.acceleration - ((1.0 - step.alpha_f) * end.total + step.alpha_f * start.total)
             + start.remainder;
         self.residual = end.remainder * (inertia / length);
-        let total = end.total;
-        for (pocket, share) in end.pockets.iter_mut().zip(shares()) {
-            *pocket = (share.inertia * total - share.moment) / share.radius;
+        self.each = self.residual / balls as f64;
+    }
+
+    /// Finds the forces of the pockets in a step that is solved: what each ball lacks of its share.
+    pub fn press(&mut self, groups: &Groups) {
+        let end = &mut self.end;
+        for (share, pockets) in groups.shares().zip(end.pockets.chunks_mut(WIDTH)) {
+            let forces = (share.inertia.scale(end.total) - share.moment) / share.radius;
+            pockets.iter_mut().zip(forces.0).for_each(|(pocket, force)| *pocket = force);
         }
     }
 
@@ -391,8 +452,9 @@ pub fn make_consistent(spacing: &Spacing, model: &Model, state: &mut State, boun
     (turn.centre, turn.velocity) = centre(boundary);
     let mass = model.bearing.ball.mass;
     let (mut inertia, mut moment) = (0.0, 0.0);
+    let turned = turn.angle.sin_cos();
     for ((ball, azimuth), pocket) in state.balls.iter_mut().zip(&spacing.azimuths).zip(&mut turn.pockets) {
-        let Directions { radial, tangential } = turn_directions(turn.angle, *azimuth);
+        let Directions { radial, tangential } = Directions::turned(turned, *azimuth);
         let radius = radial.dot(&(ball.position - turn.centre));
         let rate = radial.dot(&(ball.velocity - turn.velocity));
         let force = ball.total.force;
@@ -414,17 +476,12 @@ pub fn make_consistent(spacing: &Spacing, model: &Model, state: &mut State, boun
     }
 }
 
-fn turn_directions(angle: f64, [c, s]: [f64; 2]) -> Directions {
-    let (sin, cos) = angle.sin_cos();
-    let [cos, sin] = turned([c, s], cos, sin);
-    Directions { radial: Vector3::new(0.0, cos, sin), tangential: Vector3::new(0.0, -sin, cos) }
-}
-
 /// Force and moment of the guide that holds the centre of an ideal cage: on the outer race about its origin \[m].
 pub fn on_guide(spacing: &Spacing, turn: &CommonTurn, places: impl Iterator<Item = Vector3<f64>>) -> Wrench {
     let mut sum = Wrench::default();
+    let turned = turn.angle.sin_cos();
     for ((azimuth, pocket), place) in spacing.azimuths.iter().zip(&turn.pockets).zip(places) {
-        let force = turn.directions(*azimuth).tangential * -*pocket;
+        let force = Directions::turned(turned, *azimuth).tangential * -*pocket;
         sum.force += force;
         sum.moment += (place - turn.centre).cross(&force);
     }

@@ -6,7 +6,7 @@ use super::Effects;
 use super::effect::{Effect, Info};
 use super::estimate::Estimate;
 use super::keys::keys;
-use super::twin::Twin;
+use super::twin::{Twin, VIBRATION};
 use crate::schema::Components;
 use crate::schema::numbers::{Number, Place, Range};
 use crate::schema::units::Acceleration;
@@ -94,7 +94,7 @@ impl Effect for Settings {
         let unheld = estimate.spacing.unheld;
         let falls =
             if unheld { "; and balls that no load holds fall, which has no part in this" } else { "" };
-        let twin = Twin { always_matters: unheld, unsettled: true, ..twin.remarked(falls) };
+        let twin = Twin { always_matters: unheld, unsettled: Some(VIBRATION), ..twin.remarked(falls) };
         vec![twin.written("[effects] gravity = [0, -9.81, 0]; its direction is not known here")]
     }
 

@@ -12,7 +12,7 @@ use super::effect::{Effect, Getter, Info, Row, Setup};
 use super::estimate::Estimate;
 use super::keys::Keys;
 use super::losses::Part;
-use super::twin::Twin;
+use super::twin::{Twin, VIBRATION};
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::rotation::{from_quaternion, tangent_inverse_transposed, turn};
 use crate::numerics::scalar::Scalar;
@@ -297,7 +297,7 @@ impl Effect for Settings {
         });
         let words = if on { "" } else { "a support of 1000 N/um and 10 N m/mrad" };
         // A settled displacement of 0.2 % went with 5 % of the largest load: what a race rests on changes how it vibrates.
-        vec![Twin { unsettled: true, ..twin.taken_as(words).written(write) }]
+        vec![Twin { unsettled: Some(VIBRATION), ..twin.taken_as(words).written(write) }]
     }
 
     fn rows(&self) -> Vec<Row> {

@@ -58,6 +58,14 @@ pub struct Directions {
     pub tangential: Vector3<f64>,
 }
 
+impl Directions {
+    /// Those of a ball whose azimuth has this cosine and sine where the turn is 0, by the sine and cosine of the turn.
+    pub fn turned((sin, cos): (f64, f64), [c, s]: [f64; 2]) -> Self {
+        let (cos, sin) = (cos * c - sin * s, sin * c + cos * s);
+        Self { radial: Vector3::new(0.0, cos, sin), tangential: Vector3::new(0.0, -sin, cos) }
+    }
+}
+
 impl CommonTurn {
     /// A turn with this centre \[m] and velocity [m/s] that balls nearly follow; they are to be placed there ([`CommonTurn::place`]).
     pub fn of_balls(
@@ -87,16 +95,15 @@ impl CommonTurn {
     }
 
     /// Directions of a ball whose azimuth has this cosine and sine where the turn is 0.
-    pub fn directions(&self, [c, s]: [f64; 2]) -> Directions {
-        let (sin, cos) = self.angle.sin_cos();
-        let (cos, sin) = (cos * c - sin * s, sin * c + cos * s);
-        Directions { radial: Vector3::new(0.0, cos, sin), tangential: Vector3::new(0.0, -sin, cos) }
+    pub fn directions(&self, azimuth: [f64; 2]) -> Directions {
+        Directions::turned(self.angle.sin_cos(), azimuth)
     }
 
     /// Puts balls where the turn has them, at their distances from the axis.
     pub fn place(&self, spacing: &Spacing, balls: &mut [BallState]) {
+        let turn = self.angle.sin_cos();
         for (ball, azimuth) in balls.iter_mut().zip(&spacing.azimuths) {
-            let Directions { radial, tangential } = self.directions(*azimuth);
+            let Directions { radial, tangential } = Directions::turned(turn, *azimuth);
             let (at, v) = (ball.position - self.centre, ball.velocity - self.velocity);
             let radius = at.dot(&radial);
             let (axial, rate) = (Vector3::x() * at.x, Vector3::x() * v.x + radial * v.dot(&radial));

@@ -418,3 +418,23 @@ fn a_load_that_grows_from_nothing_is_looked_at_where_it_has_grown() {
     let why = estimate::of(&unloaded, &Model::new(&unloaded).unwrap()).unwrap_err().to_string();
     assert!(why.contains("no ball is loaded"), "{why}");
 }
+
+/// A settled state has no vibration: what is said not to matter by it says so. Where it matters, there is nothing to be said.
+#[test]
+fn what_a_settled_state_does_not_have_is_said_of_what_would_not_matter() {
+    let of = |threshold: &str| {
+        let scene = scene(THRUST, &[("effects.auto_threshold", threshold)]);
+        estimate::verdicts(&scene, &Model::new(&scene).unwrap()).unwrap()
+    };
+    let words = "without vibration, by which it changed the largest load in runs by up to 5.9 %";
+    for (threshold, matters) in [("0.05", false), ("1e-6", true)] {
+        let verdicts = of(threshold);
+        let gravity = find(&verdicts, "gravity");
+        assert_eq!(
+            (gravity.matters, gravity.sentence.contains(words)),
+            (matters, !matters),
+            "{}",
+            gravity.sentence
+        );
+    }
+}

@@ -3,8 +3,9 @@
 mod figure;
 mod table;
 
+use roulement::effects::cage::CageKind;
 use roulement::scene::machine::MachineScene;
-use roulement::scene::{Level, Schedule};
+use roulement::scene::{Level, Scene, Schedule};
 use roulement::simulation::machine::{Machine, MachineError};
 use roulement::simulation::motions::Motion;
 use roulement::simulation::system::{at_speed, largest_speed};
@@ -24,6 +25,21 @@ const EARLIER: f64 = 0.1;
 const MANY_BALLS: usize = 60;
 /// [-] frequencies of one motion at two moments differ by less.
 const SAME: f64 = 0.05;
+
+/// A machine whose balls go along with rings that move by micrometres, as they do in pockets with play: without ideal cages, which hold them
+/// and damp such motions many times too much (docs/model.md, section 19). None where there is no such cage.
+fn in_pockets_with_play(scene: &MachineScene) -> Option<MachineScene> {
+    let free = |own: &mut Scene| {
+        if own.effects.cage.is_ideal() {
+            own.effects.cage.kind = CageKind::None;
+        }
+    };
+    has_ideal_cage(scene).then(|| scene.with(free))
+}
+
+fn has_ideal_cage(scene: &MachineScene) -> bool {
+    scene.bearings().iter().any(|(_, own)| own.effects.cage.is_ideal())
+}
 
 /// A motion, its growth the mean of some moments.
 #[derive(Clone, Debug)]
@@ -59,6 +75,8 @@ pub struct Row {
 pub struct Modes {
     /// Title of the scene.
     pub title: String,
+    /// Are balls free that ideal cages of the scene keep apart?
+    pub freed: bool,
     /// At the speed of the scene.
     pub own: Row,
     /// At other speeds, by growing speed; none where nothing turns.
@@ -84,6 +102,9 @@ impl Modes {
     /// # Errors
     /// If the machine cannot start or run at its own speed.
     pub fn of(scene: &MachineScene, asked: &Asked) -> Result<Self, MachineError> {
+        let free = in_pockets_with_play(scene);
+        let freed = free.is_some();
+        let scene = free.as_ref().unwrap_or(scene);
         let own = speed_of(scene, asked.time);
         let (after, motions) = at(scene, asked)?;
         let up_to = asked.up_to.unwrap_or(match scene {
@@ -101,15 +122,15 @@ impl Modes {
             MachineScene::Bearing(scene) => scene.title.clone(),
             MachineScene::Shaft(scene) => scene.title.clone(),
         };
-        Ok(Self { title, own: Row { speed: own, after, motions }, rows })
+        Ok(Self { title, freed, own: Row { speed: own, after, motions }, rows })
     }
 }
 
 /// \[s] how long a machine runs before it is judged, at most, and which part of its run.
 const JUDGED_AFTER: (f64, f64) = (2e-3, 0.2);
 
-/// Motions where the script of a scene is at a time \[s], the one that grows fastest first. None of a machine that cannot run, whose motions
-/// cannot be found, or whose level has none.
+/// Motions where the script of a scene is at a time \[s], the one that grows fastest first, of balls that are free in their pockets. None of a
+/// machine that cannot run, whose motions cannot be found, or whose level has none.
 pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
     let duration = match scene {
         MachineScene::Bearing(scene) => scene.load.duration.0,
@@ -119,7 +140,8 @@ pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
         return None;
     }
     let after = JUDGED_AFTER.0.min(JUDGED_AFTER.1 * duration);
-    let found = at(scene, &Asked { time, after, up_to: None, speeds: 0 });
+    let free = in_pockets_with_play(scene);
+    let found = at(free.as_ref().unwrap_or(scene), &Asked { time, after, up_to: None, speeds: 0 });
     let mut motions = found.ok()?.1.ok()?;
     motions.sort_by(|a, b| b.motion.growth.total_cmp(&a.motion.growth));
     Some(motions)
@@ -128,17 +150,21 @@ pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
 /// Growth where the script of a scene is at a time \[s], in a sentence: what whoever runs this machine should know. Nothing is said of a
 /// machine that cannot run.
 pub fn warnings(scene: &MachineScene, time: f64) -> Vec<String> {
-    told(&judged(scene, time).unwrap_or_default())
+    told(&judged(scene, time).unwrap_or_default(), scene)
 }
 
-/// Growth among motions, the one that grows fastest first, in a sentence.
-pub fn told(motions: &[Found]) -> Vec<String> {
+/// Growth among the motions of a scene, the one that grows fastest first, in a sentence.
+pub fn told(motions: &[Found], scene: &MachineScene) -> Vec<String> {
+    let freed = match has_ideal_cage(scene) {
+        true => ", with balls that are free in their pockets (the scene's ideal cage damps it)",
+        false => "",
+    };
     let growing: Vec<&Found> = motions.iter().filter(|found| found.grows()).collect();
     let rest = growing.len().saturating_sub(1);
     let others = if rest > 0 { format!(" (and {rest} more)") } else { String::new() };
     let sentence = |Found { motion: Motion { frequency, growth, shape, .. }, .. }: &&Found| {
         format!(
-            "a motion grows: {shape}, {frequency:.2} Hz, by {growth:.1} 1/s{others}; `roulement modes` tells more, docs/holding-a-bearing.md \
+            "a motion grows: {shape}, {frequency:.2} Hz, by {growth:.1} 1/s{others}{freed}; `roulement modes` tells more, docs/holding-a-bearing.md \
              what stops it"
         )
     };

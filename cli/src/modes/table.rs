@@ -29,6 +29,12 @@ fn write(out: &mut String, modes: &Modes) -> std::fmt::Result {
         writeln!(out, "{}", modes.title)?;
     }
     let Row { speed, after, motions } = &modes.own;
+    if modes.freed {
+        writeln!(
+            out,
+            "balls are free here, as in pockets with play: the scene's ideal cage would hold them, and damp what a ring does by micrometres"
+        )?;
+    }
     writeln!(
         out,
         "motions at {:.2} rpm, {} to {} ms after the start: frequency, growth (+- half its range there)",
@@ -104,6 +110,7 @@ pub fn to_json(modes: &Modes) -> Value {
     };
     json!({
         "title": modes.title,
+        "balls_freed": modes.freed,
         "own": row(&modes.own),
         "speeds": modes.rows.iter().map(row).collect::<Vec<_>>(),
     })

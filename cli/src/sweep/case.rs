@@ -173,7 +173,7 @@ fn played(
     let mut seen = watch.finish(&machine);
     let motions = wanted.growth.then(|| judged(scene, 0.0));
     if let Some(Some(motions)) = &motions {
-        seen.set_growing(&told(motions));
+        seen.set_growing(&told(motions, scene));
     }
     Ok(Done { machine, seen, gathered, motions })
 }

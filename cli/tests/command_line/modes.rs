@@ -39,6 +39,33 @@ fn a_free_ring_under_thrust_grows_from_some_speed_on_and_on_two_bearings_at_none
     assert_eq!(at("two", "24000 rpm"), []);
 }
 
+/// In pockets with play balls go along with a ring that moves by micrometres: an ideal cage, which holds them, says nothing of its whirl.
+#[test]
+fn a_whirl_is_told_beside_an_ideal_cage_as_without() {
+    let scratch = Scratch::new("modes-ideal");
+    let text = std::fs::read_to_string(whirl("one")).unwrap().replace("40000 rpm", "24000 rpm");
+    let at = |cage: &str| {
+        let caged = text.replace("[effects]\n", &format!("[effects]\ncage = \"{cage}\"\n"));
+        assert_ne!(caged, text);
+        std::fs::write(scratch.path("scene.toml"), caged).unwrap();
+        let found = json(&["modes", &scratch.path("scene.toml"), "--speeds", "0", "--json"]);
+        let told = roulement(&["equilibrium", &scratch.path("scene.toml")]);
+        (growing(&found), found["balls_freed"] == true, String::from_utf8(told.stderr).unwrap())
+    };
+    let [(with, freed, told), (without, free, told_without)] = ["ideal", "none"].map(at);
+    assert!(with == without && with.len() == 1, "{with:?} {without:?}");
+    assert!(freed && !free);
+    let words = "with balls that are free in their pockets";
+    assert!(told.contains("warning: a motion grows") && told.contains(words), "{told}");
+    assert!(
+        told_without.contains("warning: a motion grows") && !told_without.contains(words),
+        "{told_without}"
+    );
+    let text = String::from_utf8(roulement(&["modes", &scratch.path("scene.toml"), "--speeds", "0"]).stdout)
+        .unwrap();
+    assert!(!text.contains("balls are free here"), "{text}");
+}
+
 #[test]
 fn a_table_and_a_figure_over_the_speed_are_written() {
     let scratch = Scratch::new("modes-files");

@@ -8,7 +8,7 @@
 use super::border::Border;
 use super::step::{Joined, StructureStep, SystemStep};
 use super::{BearingStep, finished};
-use crate::dynamics::accept::{StepEnd, accept};
+use crate::dynamics::accept::accept;
 use crate::dynamics::{Boundary, Workspace};
 use crate::model::Model;
 use crate::model::state::State;
@@ -82,11 +82,11 @@ pub fn advance_perturbed<'a>(
         }
         equations.residual(&unknowns, false);
         let trials: Vec<_> = equations.trials.iter().map(|trial| trial.end.clone()).collect();
+        let of_bearings = equations.bearing_ends();
         drop(equations);
         let parts = bearings.iter().zip(&mut states).zip(boundaries).zip(aside.iter_mut());
-        for (((bearing, state), boundary), workspace) in parts {
-            let end = StepEnd::new(bearing.model, state, boundary, h, workspace);
-            accept(bearing.model, state, boundary, &step, (workspace, &end));
+        for ((((bearing, state), boundary), workspace), end) in parts.zip(&of_bearings) {
+            accept(bearing.model, state, boundary, &step, (workspace, end));
         }
         ends.push(structures.iter().zip(trials).map(|(one, end)| finished(one, end, &step)).collect());
     }

@@ -4,11 +4,11 @@
 
 use nalgebra::DVector;
 
-use super::super::StepFailure;
 use super::super::accept::StepEnd;
 use super::super::equations::BearingStep;
 use super::super::local_error::Allowed;
 use super::super::matrix::prepare_correction;
+use super::super::{StepFailure, Workspace};
 use super::Part;
 use super::border::{Border, CarriedRace};
 use super::structure::{Seat, StructureLoad, StructureTrial};
@@ -320,7 +320,11 @@ impl<'a> SystemStep<'a> {
     }
 
     /// The ends of a solved step.
-    pub fn bearing_ends(&self) -> Vec<StepEnd> {
+    pub fn bearing_ends(&mut self) -> Vec<StepEnd> {
+        for one in &mut self.bearings {
+            let Workspace { spacing, groups, .. } = &mut *one.workspace;
+            spacing.iter_mut().for_each(|trial| trial.press(groups));
+        }
         let of = |one: &BearingStep<'_>| {
             StepEnd::new(one.model, one.start, one.boundary, self.step.h, one.workspace)
         };

@@ -195,15 +195,20 @@ fn solve_alone(blocks: &Eliminated, turn: &OrbitTurn<Lanes>, x: &mut Six<Lanes>)
     *x = turn.stacked(&product(&blocks.inverse, &turn.back().stacked(x)));
 }
 
-/// Takes the right-hand sides of blocks out of loads on the members.
+/// Takes the right-hand sides of blocks out of loads on the members, and adds up what is to be taken out of that of an unknown that they share.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 pub(super) fn eliminate(
     blocks: &Eliminated,
     turn: &OrbitTurn<Lanes>,
     x: &mut Six<Lanes>,
-    loads: &mut [Six<Lanes>],
+    (loads, of_shared): (&mut [Six<Lanes>], &mut Lanes),
 ) {
     *x = product(&blocks.inverse, &turn.back().stacked(x));
+    if let Some(shared) = &blocks.shared {
+        for i in 0..BLOCK {
+            *of_shared += shared.row[i] * x[i];
+        }
+    }
     for (coupling, load) in blocks.couplings.iter().zip(loads) {
         let taken = turn.stacked(&product(&coupling.left, x));
         for i in 0..BLOCK {
@@ -212,15 +217,20 @@ pub(super) fn eliminate(
     }
 }
 
-/// The solutions of blocks, from that of the members.
+/// The solutions of blocks, from that of the members and of an unknown that they share.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 pub(super) fn substitute(
     blocks: &Eliminated,
     turn: &OrbitTurn<Lanes>,
     x: &mut Six<Lanes>,
-    members: &[Six<Lanes>],
+    (members, common): (&[Six<Lanes>], Option<&Lanes>),
 ) {
     let mut own = *x;
+    if let (Some(common), Some(shared)) = (common, &blocks.shared) {
+        for i in 0..BLOCK {
+            own[i] -= shared.column[i] * *common;
+        }
+    }
     for (coupling, moved) in blocks.couplings.iter().zip(members) {
         let follows = product(&coupling.right, &turn.back().stacked(moved));
         for i in 0..BLOCK {

@@ -108,10 +108,7 @@ impl Arrowhead {
         self.worlds.resize(self.members.len(), NO_BLOCKS[0]);
         let mut taken = NO_BLOCKS[0][0];
         for ((blocks, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
-            eliminate(blocks, turn, x, &mut self.worlds);
-            if let Some(shared) = &blocks.shared {
-                shared.row.iter().zip(&*x).for_each(|(row, x)| taken += *row * *x);
-            }
+            eliminate(blocks, turn, x, (&mut self.worlds, &mut taken));
         }
         if let Some(place) = self.shared {
             border[place] -= sum_of_lanes(&taken);
@@ -137,10 +134,7 @@ impl Arrowhead {
         }
         let common = self.shared.map(|place| Lanes::constant(border[place]));
         for ((blocks, turn), x) in blocks.zip(&self.turns).zip(&mut *x) {
-            if let (Some(common), Some(shared)) = (common, &blocks.shared) {
-                x.iter_mut().zip(&shared.column).for_each(|(x, column)| *x -= *column * common);
-            }
-            substitute(blocks, turn, x, &self.worlds);
+            substitute(blocks, turn, x, (&self.worlds, common.as_ref()));
         }
         let finite = |lanes: &Lanes| lanes.0.iter().all(|v| v.is_finite());
         x.as_flattened().iter().all(finite) && border.iter().all(|v| v.is_finite())

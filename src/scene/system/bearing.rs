@@ -78,6 +78,7 @@ impl WrittenBearing {
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         check_changes(&set).map_err(inside)?;
         let mut estimated_mass = None;
+        let catalogued = catalogue.is_some();
         let (text, folder, file) = match (scene, catalogue) {
             (Some(Value::Table(keys)), None) => (keys.to_string(), given.folder.clone(), None),
             (Some(Value::String(file)), None) => {
@@ -104,6 +105,9 @@ impl WrittenBearing {
         let mut table = explain::table(&text)
             .map_err(|(why, _)| explain::with_place(why, &text, None, file.as_deref()))
             .map_err(inside)?;
+        if catalogued {
+            leave_balls_free(&mut table);
+        }
         merge(&mut table, set);
         if mounting.seats_outer_ring() {
             seat_outer_ring(&mut table, &mounting, estimated_mass).map_err(inside)?;
@@ -151,6 +155,14 @@ fn check_changes(set: &Table) -> Result<(), SceneError> {
         Some(key) => Err(SceneError::conflict(format!("bearing.set.{key}"), why)),
         None => Ok(()),
     })
+}
+
+/// Takes the ideal cage out of a scene of the catalogue. Balls that one keeps apart cannot go along with a ring that shifts, which damps a
+/// shaft's vibrations many times too much (docs/model.md, section 19), and it may not stand in a housing.
+fn leave_balls_free(table: &mut Table) {
+    if let Some(effects) = table.get_mut("effects").and_then(Value::as_table_mut) {
+        effects.remove("cage");
+    }
 }
 
 /// Sets keys of a table, section by section.
