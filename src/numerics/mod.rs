@@ -4,6 +4,7 @@ pub mod arrowhead;
 pub mod condensed;
 pub mod eigen;
 pub mod elliptic;
+pub mod esdirk;
 pub mod given;
 pub mod hermite;
 pub mod hht;
