@@ -24,9 +24,11 @@ use crate::model::bodies::{Body, PerRace, Race};
 use crate::model::energies::{Energies, Powers, Pressed};
 use crate::model::state::{BallState, BodyState, State, Trend, axes_of};
 use crate::numerics::elementary::cbrt;
+use crate::numerics::esdirk;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::Wrench;
 use crate::numerics::step_control::LARGEST_CUT;
+use crate::schema::Method;
 
 /// \[N] residual that is small enough for any bearing (paper section 5).
 const FORCE_TOLERANCE: f64 = 1e-6;
@@ -36,6 +38,10 @@ const MOST_RELATIVE_TOLERANCE: f64 = 1e-8;
 /// [-] residual over the force that makes up for the error of a step: what Newton's method leaves must not show beside that error, nor add up
 /// in steps so small that they have next to none (cli/tests/studies/cost_reference.rs).
 const SHARE_OF_ERROR: f64 = 1e-3;
+/// [-] the same of a stage of a method of several, whose error is that of a method of lower order: with 1e-3 and 1e-8 `scenes/radial.toml` takes 1.3 times
+/// the evaluations, with ten times of it a twentieth fewer, at the same errors of place, loads and torque to two digits.
+const SHARE_OF_STAGES: f64 = 0.03;
+const MOST_OF_STAGES: f64 = 1e-5;
 /// [-] units of round-off that positions put into forces through the stiffest contact: 1100 m from the origin Newton's
 /// method still reached one unit in every step (tests/hard_cases/extremes.rs); the rest is margin.
 const ROUND_OFF_UNITS: f64 = 10.0;
@@ -78,8 +84,15 @@ pub struct StepEnd {
 }
 
 impl StepEnd {
-    /// Energies of the step of `h` \[s] from a state that was solved with this workspace.
-    pub fn new(model: &Model, state: &State, boundary: &Boundary, h: f64, workspace: &Workspace) -> Self {
+    /// Energies of the step of `h` \[s] from a state that was solved with this workspace; with the powers of its stages before the end in
+    /// their mean, or none where the trapezoidal rule holds.
+    pub fn new(
+        model: &Model,
+        (state, stages): (&State, Option<&Powers>),
+        boundary: &Boundary,
+        h: f64,
+        workspace: &Workspace,
+    ) -> Self {
         let solved = Solved { workspace, guide: model.cage_guide() };
         let n_balls = workspace.balls.len();
         let mut totals = Totals::of(&solved, n_balls);
@@ -88,32 +101,22 @@ impl StepEnd {
             totals.add(Race::Outer.into(), spacing::on_guide(spacing, &trial.end, places));
         }
         let motions = || (0..n_balls).map(|ball| workspace.groups.motion(ball));
-        let ambient = model.ambient(&boundary.frame);
-        let mut powers = Powers {
-            input: power_into_balls(&ambient, motions()),
-            friction: totals.friction_power,
-            damping: totals.damping_power,
-            around: power_lost_around(&ambient, motions()),
-        };
-        for (body, trial) in workspace.bodies.iter() {
-            match (body, trial) {
-                (_, Some(trial)) => powers.input += trial.input_power,
-                (Body::Race(race), None) => {
-                    powers.input -= boundary.motion[race].1.power(&totals.on(body));
-                }
-                // A cage is moved by forces alone.
-                (Body::Cage, None) => {}
-            }
-        }
-        let of_race = |race: Race| workspace.bodies[race].as_ref().map(|trial| &trial.end);
-        let supports = supports_of(model, of_race, boundary, &mut powers);
+        let (powers, supports) = powers_of(model, boundary, &totals, workspace);
         let stiffened = |(index, ball): (usize, &BallState)| {
             let now = |race| Pressed::new(&workspace.groups.pair(index, race)).stiffened(&ball.pressed[race]);
             now(Race::Inner) + now(Race::Outer)
         };
         let stiffened = state.balls.iter().enumerate().map(stiffened);
         let mut energies = state.energies;
-        let left = energies.add((&state.powers, &powers), h, stiffened.fold(0.0, |sum, work| sum + work));
+        let stiffened = stiffened.fold(0.0, |sum, work| sum + work);
+        let left = match stages {
+            None => energies.add((&state.powers, &powers), h, stiffened),
+            Some(stages) => {
+                let mut mean = *stages;
+                mean.add_part(esdirk::DIAGONAL, &powers);
+                energies.add_mean(&mean, h, stiffened)
+            }
+        };
         if model.solver.energy_error > 0.0 {
             let bodies = model.bodies.iter().zip(workspace.bodies.iter());
             let moved =
@@ -157,12 +160,49 @@ impl StepEnd {
     }
 }
 
-/// Takes over a solved step that ends like this.
+/// Powers at the end of a step, or of a stage of one, that was solved with this workspace, and the supports of the races there.
+fn powers_of(
+    model: &Model,
+    boundary: &Boundary,
+    totals: &Totals,
+    workspace: &Workspace,
+) -> (Powers, PerRace<Option<SupportState>>) {
+    let motions = || (0..workspace.balls.len()).map(|ball| workspace.groups.motion(ball));
+    let ambient = model.ambient(&boundary.frame);
+    let mut powers = Powers {
+        input: power_into_balls(&ambient, motions()),
+        friction: totals.friction_power,
+        damping: totals.damping_power,
+        around: power_lost_around(&ambient, motions()),
+    };
+    for (body, trial) in workspace.bodies.iter() {
+        match (body, trial) {
+            (_, Some(trial)) => powers.input += trial.input_power,
+            (Body::Race(race), None) => {
+                powers.input -= boundary.motion[race].1.power(&totals.on(body));
+            }
+            // A cage is moved by forces alone.
+            (Body::Cage, None) => {}
+        }
+    }
+    let of_race = |race: Race| workspace.bodies[race].as_ref().map(|trial| &trial.end);
+    let supports = supports_of(model, of_race, boundary, &mut powers);
+    (powers, supports)
+}
+
+/// Powers at the end of a stage that was solved with this workspace.
+pub(super) fn powers_of_stage(model: &Model, boundary: &Boundary, workspace: &Workspace) -> Powers {
+    let solved = Solved { workspace, guide: model.cage_guide() };
+    let totals = Totals::of(&solved, workspace.balls.len());
+    powers_of(model, boundary, &totals, workspace).0
+}
+
+/// Takes over a solved step of `h` \[s] that ends like this.
 pub fn accept(
     model: &Model,
     state: &mut State,
     boundary: &Boundary,
-    step: &HhtStep,
+    (h, step): (f64, &HhtStep),
     (workspace, end): (&Workspace, &StepEnd),
 ) {
     let error = workspace.force_of_error(&state.balls, &model.bearing.ball, step);
@@ -194,7 +234,7 @@ pub fn accept(
             // A cage is moved by forces alone.
             (Body::Cage, None) => {}
         }
-        state.count_turn(turned, 0.5 * step.h * (spin + state.rate.x));
+        state.count_turn(turned, 0.5 * h * (spin + state.rate.x));
     }
     state.spacing = workspace.spacing.as_ref().map(|trial| trial.end.clone());
     state.orientations.clone_from(&boundary.orientations);
@@ -203,8 +243,9 @@ pub fn accept(
     state.powers = end.powers;
     let solved = Solved { workspace, guide: model.cage_guide() };
     grow(model, state, boundary, |ball, race| workspace.touch(ball, race));
-    record(model, state, &solved, &boundary.conditions, Some(step.h));
-    state.force_tolerance = force_tolerance(&solved, state.balls.len(), reach(model, state), error);
+    record(model, state, &solved, &boundary.conditions, Some(h));
+    state.force_tolerance =
+        force_tolerance(&solved, state.balls.len(), reach(model, state), error, model.solver.method);
 }
 
 /// Goes on to what rings and balls have grown by at the end of a step, whose work is put in.
@@ -255,9 +296,13 @@ fn reach(model: &Model, state: &State) -> f64 {
     races[0].max(races[1]) + model.race_length()
 }
 
-/// \[N] residual that is small enough after a step with this `error` \[N]: a share of that, within nine and eight digits of the largest load; but
-/// not below a last digit of a coordinate times the stiffness `dQ/dx` of the stiffest contact, where nothing but rounding remains.
-fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> f64 {
+/// \[N] residual that is small enough after a step of a method with this `error` \[N]: a share of that, within nine and some digits of the largest
+/// load; but not below a last digit of a coordinate times the stiffness `dQ/dx` of the stiffest contact, where nothing but rounding remains.
+fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64, method: Method) -> f64 {
+    let [share, most] = match method {
+        Method::Hht => [SHARE_OF_ERROR, MOST_RELATIVE_TOLERANCE],
+        Method::Esdirk3 => [SHARE_OF_STAGES, MOST_OF_STAGES],
+    };
     // `dQ/dx = 1.5 K^(2/3) Q^(1/3)`; the root is taken once, of the largest
     let (mut load, mut cube) = (0.0f64, 0.0f64);
     let mut see = |contact: &PairForces| {
@@ -274,7 +319,7 @@ fn force_tolerance(pairs: &impl Pairs, balls: usize, reach: f64, error: f64) -> 
     pairs.between_balls().for_each(|pair| see(&pair.forces));
     let stiffness = 1.5 * cbrt(cube);
     let round_off = ROUND_OFF_UNITS * f64::EPSILON * stiffness * reach;
-    let of_load = (SHARE_OF_ERROR * error).max(RELATIVE_TOLERANCE * load).min(MOST_RELATIVE_TOLERANCE * load);
+    let of_load = (share * error).max(RELATIVE_TOLERANCE * load).min(most * load);
     FORCE_TOLERANCE.max(of_load).max(round_off)
 }
 
@@ -283,6 +328,9 @@ impl Workspace {
     /// `m (a1 - a0) (beta - alpha_f/2 - 1/6)/beta`.
     fn force_of_error(&self, start: &[BallState], ball: &Ball, step: &HhtStep) -> f64 {
         let square = |(index, state): (usize, &BallState)| {
+            if let Some([place, turn]) = self.embedded.get(index) {
+                return place + turn;
+            }
             let unknowns = self.groups.unknowns(index);
             let change = |from: usize, before: Vector3<f64>| {
                 let after = unknowns.fixed_rows::<3>(from).into_owned();
@@ -346,7 +394,8 @@ pub fn make_consistent(model: &Model, state: &mut State, boundary: &Boundary) {
     let touch = |ball: usize, race: Race| contacts.balls[ball].raceways[race].touch();
     state.grown = model.growth.as_ref().map(|_| grown(touch, state, boundary));
     record(model, state, &contacts, &boundary.conditions, None);
-    state.force_tolerance = force_tolerance(&contacts, state.balls.len(), reach(model, state), 0.0);
+    state.force_tolerance =
+        force_tolerance(&contacts, state.balls.len(), reach(model, state), 0.0, model.solver.method);
 }
 
 /// Forces of these contacts at the motion that a state has, the accelerations and multipliers that they ask for, and their powers.

@@ -5,7 +5,8 @@ use super::body::{BodyTrial, RaceSeen};
 use super::body_sums::{BodyLoad, BodyScales, BodyStep};
 use super::cage::CageTrial;
 use super::spacing::SpacingTrial;
-use super::{Boundary, Counted, Workspace};
+use super::stages::Foreseen;
+use super::{Boundary, Workspace};
 use crate::contact::many::ContactGroup;
 use crate::contact::{ContactModel, RaceMotion};
 use crate::effects::ambient::Ambient;
@@ -28,7 +29,12 @@ pub struct BearingStep<'a> {
     pub(super) contacts: PerRace<ContactModel<'a>>,
     /// Loads from outside at the end of the step.
     pub(super) ambient: Ambient,
+    /// Where the motion starts from: the state at the start of the step, or what earlier stages lead a stage to.
     pub start: &'a State,
+    /// State at the start of the step.
+    pub before: &'a State,
+    /// What earlier stages lead a stage to expect.
+    pub foreseen: Option<&'a Foreseen>,
     pub step: HhtStep,
     pub boundary: &'a Boundary,
     pub force_tolerance: f64,
@@ -46,25 +52,24 @@ pub struct BearingStep<'a> {
 }
 
 impl<'a> BearingStep<'a> {
-    /// The equations of a step of `h` \[s].
+    /// The equations of a step from a state.
     pub fn new(
         model: &'a Model,
         start: &'a State,
         boundary: &'a Boundary,
-        h: f64,
+        step: HhtStep,
         workspace: &'a mut Workspace,
     ) -> Self {
         workspace.balls.resize_with(start.balls.len(), BallTrial::new);
         workspace.balls.iter_mut().for_each(|trial| trial.before = 0.0);
         workspace.settled = false;
-        workspace.counted = Counted::default();
+        workspace.embedded.clear();
         workspace.prepare_bodies(model, start);
         if let Some(cage) = &mut workspace.cage {
             cage.oil = model.oil_around_cage(&boundary.conditions);
         }
         let contacts = model.contacts_oriented(&boundary.conditions, boundary.orientations.as_ref());
         let races = PerRace::new(|race| race_motion(&boundary.motion[race].0, &boundary.motion[race].1));
-        let step = HhtStep::new(model.solver.alpha_f, h);
         workspace.groups.begin(&start.balls, (&model.bearing.ball, &step), || {
             let motion = start.balls[0].motion();
             PerRace::new(|race| ContactGroup::filled(&contacts[race].evaluate(&motion, &races[race])))
@@ -80,6 +85,8 @@ impl<'a> BearingStep<'a> {
             contacts,
             ambient: model.ambient(&boundary.frame),
             start,
+            before: start,
+            foreseen: None,
             step,
             boundary,
             force_tolerance: start.force_tolerance,
@@ -90,6 +97,11 @@ impl<'a> BearingStep<'a> {
             renewed_rows: false,
             fresh: true,
         }
+    }
+
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        BLOCK * self.start.balls.len() + self.model.border_size()
     }
 
     /// Do steps share the blocks of balls?

@@ -2,9 +2,10 @@
 
 use super::Workspace;
 use super::equations::BearingStep;
+use super::stages::Foreseen;
 use crate::model::Model;
 use crate::model::bodies::{Body, Constraint, Race};
-use crate::model::state::{Trend, stack};
+use crate::model::state::{State, Trend, stack};
 use crate::numerics::arrowhead::{BLOCK, Six};
 use crate::numerics::orbit_turn::OrbitTurn;
 
@@ -17,7 +18,12 @@ impl BearingStep<'_> {
     /// First guess: accelerations and multipliers change as they did in the last step, where they have done so smoothly, and stay as they
     /// are elsewhere; those of a ball turn with its orbit.
     pub fn guess_steady_trend(&mut self, unknowns: &mut Vec<f64>) {
-        self.guess_steady_acceleration(unknowns);
+        if let Some(Foreseen { unknowns: foreseen, steady }) = self.foreseen {
+            unknowns.clone_from(foreseen);
+            self.workspace.steady.clone_from(steady);
+            return;
+        }
+        steady_acceleration(self.model, self.start, unknowns);
         let Workspace { steady, expected, .. } = &mut *self.workspace;
         let Trend { step, changes, smooth } = &self.start.trend;
         expected.clear();
@@ -26,14 +32,10 @@ impl BearingStep<'_> {
         } else {
             expected.resize(unknowns.len(), 0.0);
         }
-        let race = self.start.race(Race::Outer);
         let changes = expected.chunks_exact_mut(BLOCK);
-        for ((ball, unknowns), change) in
-            self.start.balls.iter().zip(unknowns.chunks_exact_mut(BLOCK)).zip(changes)
+        for ((turn, unknowns), change) in
+            orbit_turns(self.start, self.step.h).zip(unknowns.chunks_exact_mut(BLOCK)).zip(changes)
         {
-            let offset = ball.position - race.pose.position;
-            let ahead = offset + (ball.velocity - race.velocity) * self.step.h;
-            let turn = OrbitTurn::between(&offset, &ahead);
             for vector in [unknowns, change] {
                 if let Ok(six) = <&mut Six<f64>>::try_from(vector) {
                     *six = turn.stacked(six);
@@ -48,32 +50,13 @@ impl BearingStep<'_> {
         }
     }
 
-    /// Accelerations and multipliers as they are.
-    fn guess_steady_acceleration(&self, unknowns: &mut Vec<f64>) {
-        unknowns.clear();
-        for ball in &self.start.balls {
-            let angular = ball.angular_acceleration * self.model.bearing.ball.radius;
-            unknowns.extend_from_slice(stack(&ball.acceleration, &angular).as_slice());
-        }
-        let length = self.model.race_length();
-        for ((_, state), (_, body)) in self.start.bodies.iter().zip(self.model.bodies.iter()) {
-            if let Some(body) = body {
-                unknowns.extend(state.acceleration.iter());
-                unknowns.extend(state.rate_derivative.iter().map(|a| a * length));
-                let scales = body.constraints.iter().map(|c| multiplier_scale(c, length));
-                unknowns.extend(state.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
-            }
-        }
-        unknowns.extend(self.start.spacing.as_ref().map(|turn| turn.acceleration * length));
-    }
-
     /// Second guess, where Newton's method failed from the first: everything keeps its velocity over the step, except for
     /// the spin of race bodies, which is prescribed.
     ///
     /// An acceleration that lasts for less than a step throws contacts far into sliding, where friction hardly depends
     /// on the velocity and Newton's method finds no way back.
     pub fn guess_steady_velocity(&self, unknowns: &mut Vec<f64>) {
-        self.guess_steady_acceleration(unknowns);
+        steady_acceleration(self.model, self.start, unknowns);
         let back = -(1.0 - self.step.gamma) / self.step.gamma;
         let (balls, border) = unknowns.split_at_mut(BLOCK * self.start.balls.len());
         balls.iter_mut().for_each(|a| *a *= back);
@@ -117,6 +100,35 @@ impl Workspace {
             },
         ));
     }
+}
+
+/// Turns of the orbits of the balls of a state over a time \[s].
+pub(super) fn orbit_turns(state: &State, time: f64) -> impl Iterator<Item = OrbitTurn<f64>> {
+    let race = state.race(Race::Outer);
+    state.balls.iter().map(move |ball| {
+        let offset = ball.position - race.pose.position;
+        let ahead = offset + (ball.velocity - race.velocity) * time;
+        OrbitTurn::between(&offset, &ahead)
+    })
+}
+
+/// Accelerations and multipliers of a state, as unknowns.
+pub(super) fn steady_acceleration(model: &Model, state: &State, unknowns: &mut Vec<f64>) {
+    unknowns.clear();
+    for ball in &state.balls {
+        let angular = ball.angular_acceleration * model.bearing.ball.radius;
+        unknowns.extend_from_slice(stack(&ball.acceleration, &angular).as_slice());
+    }
+    let length = model.race_length();
+    for ((_, state), (_, body)) in state.bodies.iter().zip(model.bodies.iter()) {
+        if let Some(body) = body {
+            unknowns.extend(state.acceleration.iter());
+            unknowns.extend(state.rate_derivative.iter().map(|a| a * length));
+            let scales = body.constraints.iter().map(|c| multiplier_scale(c, length));
+            unknowns.extend(state.multipliers.iter().zip(scales).map(|(m, scale)| m / scale));
+        }
+    }
+    unknowns.extend(state.spacing.as_ref().map(|turn| turn.acceleration * length));
 }
 
 /// A multiplier's unknown is a force: moments are divided by the race length.

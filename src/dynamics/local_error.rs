@@ -31,7 +31,7 @@ fn need_not_follow_all(model: &Model, start: &State) -> bool {
 impl BearingStep<'_> {
     /// Bodies with unknowns: state at the start, and trial.
     fn moved(&self) -> impl Iterator<Item = (Body, &BodyState, &BodyTrial)> {
-        let bodies = self.start.bodies.iter().zip(self.workspace.bodies.iter());
+        let bodies = self.before.bodies.iter().zip(self.workspace.bodies.iter());
         let bodies = bodies.filter_map(|((body, start), (_, trial))| Some((body, start, trial.as_ref()?)));
         // The error of a carried race is that of its structure.
         bodies.filter(|(_, _, trial)| !trial.is_carried())
@@ -68,7 +68,7 @@ impl BearingStep<'_> {
         let solver = &self.model.solver;
         let groups = &self.workspace.groups;
         let load = |ball: usize| Race::BOTH.map(|race| groups.pressed(ball, race).1);
-        let unresolved = need_not_follow_all(self.model, self.start).then(|| {
+        let unresolved = need_not_follow_all(self.model, self.before).then(|| {
             let loads = (0..self.start.balls.len()).flat_map(load);
             solver.unresolved_share() * loads.fold(0.0, f64::max)
         });
@@ -80,7 +80,7 @@ impl BearingStep<'_> {
         let ball = &self.model.bearing.ball;
         let radius = ball.radius;
         let masses = [ball.mass, ball.inertia / (radius * radius)];
-        self.start.balls.iter().enumerate().map(move |(index, start)| {
+        self.before.balls.iter().enumerate().map(move |(index, start)| {
             let unknowns = self.workspace.groups.unknowns(index);
             let mut ends = [0, 3].map(|from| unknowns.fixed_rows::<3>(from).into_owned());
             let mut starts = match allowed.unresolved {
@@ -99,7 +99,7 @@ impl BearingStep<'_> {
                 starts[0] += along * before;
                 ends[0] += along * after;
             }
-            self.square(allowed, [(&starts[0], &ends[0]), (&starts[1], &ends[1])], masses)
+            self.square(allowed, index, [(&starts[0], &ends[0]), (&starts[1], &ends[1])], masses)
         })
     }
 
@@ -114,14 +114,17 @@ impl BearingStep<'_> {
                 // A cage is light, and what it does to losses is not seen in loads.
                 _ => [f64::INFINITY; 2],
             };
-            (body, self.square(allowed, ends, masses))
+            (body, self.square(allowed, self.before.balls.len() + body.index(), ends, masses))
         })
     }
 
-    /// Square of the local error over what is allowed, from linear and angular accelerations [m/s2] at both ends of the step, of these
-    /// masses \[kg].
-    fn square(&self, allowed: Allowed, ends: [Ends<'_>; 2], masses: [f64; 2]) -> f64 {
-        let errors = ends.map(|(start, end)| self.step.local_error(start, end).norm_squared());
+    /// Square of the local error of what has a place in the list of balls and bodies over what is allowed, from linear and angular
+    /// accelerations [m/s2] at both ends of the step, of these masses \[kg].
+    fn square(&self, allowed: Allowed, place: usize, ends: [Ends<'_>; 2], masses: [f64; 2]) -> f64 {
+        let errors = match self.workspace.embedded.get(place) {
+            Some(errors) => *errors,
+            None => ends.map(|(start, end)| self.step.local_error(start, end).norm_squared()),
+        };
         let force = |k: usize| masses[k] * (ends[k].1 - ends[k].0).norm();
         allowed.square(errors, || [force(0), force(1) / FRICTION])
     }

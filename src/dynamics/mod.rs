@@ -1,5 +1,5 @@
-//! One implicit step: Newton's equations of balls, race bodies and what carries them under the HHT scheme. [`system::try_step`] is the step of
-//! every machine, that of a bearing alone too.
+//! One implicit step: Newton's equations of balls, race bodies and what carries them under the HHT scheme, or of the stages of a method of higher
+//! order (`stages.rs`). [`system::try_step`] is the step of every machine, that of a bearing alone too.
 
 mod accept;
 mod ball;
@@ -22,6 +22,7 @@ mod reaction;
 mod record;
 mod repair;
 mod spacing;
+mod stages;
 mod step_turn;
 mod support;
 pub mod system;
@@ -100,6 +101,8 @@ struct Counted {
 ///                         ball_, group_, border_corrections
 ///          repair.rs      balls.repaired                    blocks of single balls computed anew
 /// end      last_correction.rs  last_correction, settled     last correction, without evaluation
+///          stages.rs      embedded                          local errors where a step has stages, each of which begins anew with
+///                                                             equations.rs
 ///          local_error.rs, accept.rs                        read groups, balls, bodies, cage, steady
 ///          try_step       kept -> state, counted            matrices and counts of work
 /// ```
@@ -143,6 +146,8 @@ pub struct Workspace {
     border_correction: DVector<f64>,
     /// Correction that is not evaluated.
     last_correction: Vec<f64>,
+    /// \[m2] squares of the local errors of balls and bodies, of their places and turns, where an embedded method gives them.
+    embedded: Vec<[f64; 2]>,
     /// Has the step that was solved last ended with it?
     settled: bool,
     /// Work of the step.

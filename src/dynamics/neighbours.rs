@@ -139,7 +139,10 @@ impl Workspace {
 impl BearingStep<'_> {
     /// Lists the pairs that may touch in this step.
     pub fn list_near(&mut self) {
+        let none_before = self.workspace.neighbours.is_empty();
         self.workspace.list(near(self.model, self.start, self.step.h).into_iter());
+        // A matrix of an earlier stage is of the pairs that it had.
+        self.workspace.factorised &= none_before && self.workspace.neighbours.is_empty();
     }
 
     /// Lists pairs too that touch in the solved step and were not listed; are there some?

@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use crate::analysis::condensed::Condensed;
 use crate::interface::variables::{Causality, InputKind, Kind, MachineVariables, Offered, Source, Variable};
 use crate::scene::{Dependencies, Drive};
+use crate::schema::Method;
 use crate::schema::numbers::Variability;
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::Simulation;
@@ -86,6 +87,7 @@ pub fn render(machine: &impl Parts, name: &str, wanted: Wanted<'_>) -> std::io::
         name,
         guid: &guid,
         dependencies,
+        derivatives: bearings().all(|bearing| bearing.scene().solver.method == Method::Hht),
         stop: load.0,
         step: bearings().map(step).fold(load.1, f64::min),
     };
@@ -119,6 +121,8 @@ struct About<'a> {
     guid: &'a str,
     /// Meaning of the dependencies of its outputs.
     dependencies: Dependencies,
+    /// Are there derivatives by inputs?
+    derivatives: bool,
     /// \[s] end of the default experiment.
     stop: f64,
     /// \[s] recommended communication step.
@@ -196,7 +200,7 @@ fn co_simulation(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
             ("maxOutputDerivativeOrder", "1"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
-            ("providesDirectionalDerivative", "true"),
+            ("providesDirectionalDerivative", if about.derivatives { "true" } else { "false" }),
         ])
         .write_empty()?;
     Ok(())

@@ -38,6 +38,27 @@ pub struct Energies {
     pub unaccounted: f64,
 }
 
+impl Powers {
+    /// Those of the trapezoidal rule.
+    fn between(before: &Self, after: &Self) -> Self {
+        let mean = |of: fn(&Self) -> f64| 0.5 * (of(before) + of(after));
+        Self {
+            input: mean(|powers| powers.input),
+            friction: mean(|powers| powers.friction),
+            damping: mean(|powers| powers.damping),
+            around: mean(|powers| powers.around),
+        }
+    }
+
+    /// Adds a part of others.
+    pub fn add_part(&mut self, part: f64, of: &Self) {
+        self.input += part * of.input;
+        self.friction += part * of.friction;
+        self.damping += part * of.damping;
+        self.around += part * of.around;
+    }
+}
+
 impl Energies {
     /// [-] of the stored energy: less is rounding, where nearly nothing is put in or lost.
     const ROUNDING: f64 = 1e-6;
@@ -52,11 +73,13 @@ impl Energies {
     /// Adds a step of `h` \[s] by the trapezoidal rule: from powers before and after it, and what changes of stiffness put in \[J].
     /// Returns what that leaves to be stored \[J].
     pub fn add(&mut self, (before, after): (&Powers, &Powers), h: f64, stiffened: f64) -> f64 {
-        let integral = |before: f64, after: f64| 0.5 * h * (before + after);
-        let input = integral(before.input, after.input);
-        let friction = integral(before.friction, after.friction);
-        let damping = integral(before.damping, after.damping);
-        let around = integral(before.around, after.around);
+        self.add_mean(&Powers::between(before, after), h, stiffened)
+    }
+
+    /// Adds a step of `h` \[s] by its mean powers.
+    pub fn add_mean(&mut self, mean: &Powers, h: f64, stiffened: f64) -> f64 {
+        let Powers { input, friction, damping, around } = *mean;
+        let [input, friction, damping, around] = [input, friction, damping, around].map(|power| h * power);
         self.put_in(input);
         self.stiffened += stiffened;
         self.friction += friction;

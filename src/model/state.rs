@@ -401,7 +401,8 @@ impl State {
 pub struct Trend {
     /// \[s] size of that step.
     pub step: f64,
-    /// Changes of the unknowns beyond the turn of orbits, in their units; empty before the first step.
+    /// Changes of the unknowns beyond the turn of orbits, in their units; where steps have stages, unknowns at the start and at a stage over those
+    /// at the end. Empty before the first step.
     pub changes: Vec<f64>,
     /// Were they small, and nearer to what the step before led to expect than to nothing? Of each ball between races of prescribed motion, which
     /// it follows alone; else one for all.

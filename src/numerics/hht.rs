@@ -24,6 +24,11 @@ impl HhtStep {
         Self { h, alpha_f, beta: 0.25 * (1.0 + alpha_f).powi(2), gamma: 0.5 + alpha_f }
     }
 
+    /// A step of backward Euler of size `h` \[s], of a motion that starts without acceleration: a stage of [`super::esdirk`].
+    pub fn backward_euler(h: f64) -> Self {
+        Self { h, alpha_f: 0.0, beta: 1.0, gamma: 1.0 }
+    }
+
     /// \[m] displacement over the step from velocity and the accelerations at start and end.
     #[inline(always)]
     pub fn displacement(&self, v0: &Vector3<f64>, a0: &Vector3<f64>, a1: &Vector3<f64>) -> Vector3<f64> {

@@ -5,6 +5,7 @@ pub mod condensed;
 pub mod eigen;
 pub mod elementary;
 pub mod elliptic;
+pub mod esdirk;
 pub mod given;
 pub mod hermite;
 pub mod hht;

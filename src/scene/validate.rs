@@ -5,7 +5,7 @@ use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, S
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::effects::defects::On;
 use crate::schema::numbers::Range;
-use crate::schema::{Race, check_phases};
+use crate::schema::{Method, Race, check_phases};
 
 /// The directions of a race, in the order of their conditions.
 const DIRECTIONS: [&str; 5] = ["x", "y", "z", "ry", "rz"];
@@ -17,6 +17,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     races(scene)?;
     start(scene)?;
     steps(scene)?;
+    method(scene)?;
     scene.effects.agree(&scene.setup())?;
     inputs(scene)?;
     load(scene)?;
@@ -67,6 +68,15 @@ fn bearing(scene: &Scene) -> Result<(), SceneError> {
             "{balls} balls of {ball} m do not fit on a pitch diameter of {pitch} m: allowed is [1, {fit}]"
         );
         return Err(SceneError::conflict("bearing.balls", why));
+    }
+    Ok(())
+}
+
+/// What goes on in time by one method alone.
+fn method(scene: &Scene) -> Result<(), SceneError> {
+    if scene.solver.method == Method::Esdirk3 && scene.effects.cage.is_ideal() {
+        let why = "\"esdirk3\" moves balls freely: with effects.cage = \"ideal\", which keeps them at even spacing, allowed is \"hht\"";
+        return Err(SceneError::conflict("solver.method", why));
     }
     Ok(())
 }

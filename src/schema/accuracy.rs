@@ -11,12 +11,15 @@ use strum::{IntoStaticStr, VariantArray};
 
 use super::follow::Follows;
 use super::units::{Quantity, Time};
+use crate::numerics::esdirk;
 use crate::numerics::newton::REFACTOR_CONTRACTION;
 
 /// Time integration.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "SolverKeys")]
 pub struct Solver {
+    /// Method of the time integration.
+    pub method: Method,
     /// [-] HHT damping, in (0, 1/3]; 0.05 is the paper's.
     pub alpha_f: f64,
     /// [-] local error of a step over the ball diameter.
@@ -45,6 +48,28 @@ pub struct Solver {
     pub follows: Follows,
     /// Level of the model.
     pub level: Level,
+}
+
+/// Method of the time integration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr, VariantArray)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Method {
+    /// The HHT scheme, of order 2: the paper's.
+    #[default]
+    Hht,
+    /// A Runge-Kutta method of order 3, whose stages have HHT's own equations one after another.
+    Esdirk3,
+}
+
+impl Method {
+    /// [-] places in a step of its stages before the end.
+    pub fn places(self) -> &'static [f64] {
+        match self {
+            Self::Hht => &[],
+            Self::Esdirk3 => &esdirk::PLACES[1..esdirk::STAGES - 1],
+        }
+    }
 }
 
 /// Level of the model of a run: what it computes.
@@ -106,6 +131,7 @@ impl ErrorGoal {
 impl Default for Solver {
     fn default() -> Self {
         Self {
+            method: Method::Hht,
             alpha_f: 0.05,
             tolerance: 1e-6,
             unresolved: 0.0,
@@ -217,6 +243,7 @@ struct SolverKeys {
     accuracy: Option<Goal>,
     /// [-] error of the wrench that a goal by name has to keep: the cheapest one is taken; not with `accuracy`.
     wrench_error: Option<f64>,
+    method: Method,
     alpha_f: Option<f64>,
     tolerance: Option<f64>,
     initial_step: Option<Time>,
@@ -254,6 +281,7 @@ impl TryFrom<SolverKeys> for Solver {
             _ => Follows::Nothing,
         };
         Ok(Self {
+            method: keys.method,
             alpha_f: keys.alpha_f.unwrap_or(goal.alpha_f),
             tolerance: keys.tolerance.unwrap_or(goal.tolerance),
             unresolved: goal.unresolved,

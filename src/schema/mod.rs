@@ -22,7 +22,7 @@ mod support;
 pub mod units;
 pub mod variable_units;
 
-pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Level, Solver};
+pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Level, Method, Solver};
 pub use components::Components;
 pub use error::SceneError;
 pub use follow::{Follows, SMALLEST_TOLERANCE};

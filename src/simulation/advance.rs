@@ -9,7 +9,9 @@ use super::script::{Script, script_motion};
 use super::system::{Played, Structures};
 use super::together::{Stopped, Together};
 use super::{Simulation, step_limits};
-use crate::dynamics::system::{Joined, Part, Perturbed, Started, StructureLoad, advance_perturbed, try_step};
+use crate::dynamics::system::{
+    Joined, Part, Perturbed, StageBounds, Started, StructureLoad, advance_perturbed, try_step,
+};
 use crate::dynamics::{Boundary, StepFailure, Workspace, failure_site};
 use crate::effects::film::Films;
 use crate::model::bodies::Race;
@@ -17,6 +19,7 @@ use crate::model::state::State;
 use crate::model::structure::StructureState;
 use crate::numerics::step_control::StepControl;
 use crate::scene::{Drive, Groups, Level};
+use crate::schema::Method;
 
 impl Together<'_> {
     /// Scripted its own steps to exactly `end` \[s] under the inputs as set, some of them given by the scripts where there are some: those
@@ -114,11 +117,18 @@ impl Together<'_> {
             if next.partial_cmp(&time) != Some(Ordering::Greater) {
                 return Err((0, SimulationError::LostInRounding { time, step: h }));
             }
-            let loads = self.loads(played, next);
-            let boundaries = self.imposed(scripts, &loads, next);
+            let at = |time: f64| {
+                let loads = self.loads(played, time);
+                (self.imposed(scripts, &loads, time), loads)
+            };
+            let (boundaries, loads) = at(next);
+            let places = self.bearings[0].model.solver.method.places().iter();
+            let stages = places.map(|place| at(time + place * h));
+            let stages: Vec<_> =
+                stages.map(|(boundaries, loads)| StageBounds { boundaries, loads }).collect();
             let start: Option<Vec<State>> = (!perturbed.is_empty())
                 .then(|| self.bearings.iter().map(|bearing| bearing.state.clone()).collect());
-            match self.try_step(&boundaries, &loads, h, &mut control) {
+            match self.try_step((&boundaries, &loads), (h, &stages), &mut control) {
                 Ok(ends) => {
                     if let Some(start) = start {
                         let accepted = (&boundaries[..], &loads[..], h);
@@ -138,12 +148,11 @@ impl Together<'_> {
         }
     }
 
-    /// Tries one step of `h` \[s] under these boundaries and loads; on success gives the states of the structures.
+    /// Tries one step of a size \[s] under these boundaries and loads, and those of its stages; on success gives the states of the structures.
     fn try_step(
         &mut self,
-        boundaries: &[Boundary],
-        loads: &[StructureLoad],
-        h: f64,
+        (boundaries, loads): (&[Boundary], &[StructureLoad]),
+        step: (f64, &[StageBounds]),
         control: &mut StepControl,
     ) -> Result<Vec<StructureState>, (usize, StepFailure)> {
         let mut buffers = std::mem::take(&mut self.bearings[0].buffers);
@@ -155,7 +164,7 @@ impl Together<'_> {
             Part { model, state, boundary, workspace }
         };
         let mut parts: Vec<Part<'_>> = self.bearings.iter_mut().zip(boundaries).map(of).collect();
-        let tried = try_step(&mut parts, &steps, joined, h, control, &mut buffers);
+        let tried = try_step(&mut parts, &steps, joined, step, control, &mut buffers);
         self.bearings[0].buffers = buffers;
         tried
     }
@@ -170,6 +179,9 @@ impl Together<'_> {
         aside: &mut Vec<Workspace>,
     ) -> Result<(), Stopped> {
         let time = start[0].time;
+        if self.bearings[0].model.solver.method != Method::Hht {
+            return Err((0, SimulationError::NoDerivatives));
+        }
         for (start, bearing) in start.iter_mut().zip(&*self.bearings) {
             // Renewed by the step itself.
             start.differences.clone_from(&bearing.state.differences);

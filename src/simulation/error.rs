@@ -170,6 +170,9 @@ pub enum SimulationError {
     /// The Newton matrix of a step whose sensitivities were asked for is singular.
     #[error("at {} s the Newton matrix is singular", four(.0))]
     Singular(f64),
+    /// Sensitivities of a method that has none.
+    #[error("solver.method = \"esdirk3\" gives no derivatives by inputs: allowed is \"hht\"")]
+    NoDerivatives,
     /// So late that a step no longer changes the time.
     #[error("at {} s a step of {} s is lost in rounding: begin nearer to time 0", four(.time), four(.step))]
     LostInRounding {

@@ -9,5 +9,5 @@ use roulement::model::state::State;
 pub fn step(model: &Model, state: &mut State, boundary: &Boundary, h: f64, workspace: &mut Workspace) {
     let mut control = state.control;
     let mut part = [Part { model, state, boundary, workspace }];
-    try_step(&mut part, &[], Joined::default(), h, &mut control, &mut StepBuffers::default()).unwrap();
+    try_step(&mut part, &[], Joined::default(), (h, &[]), &mut control, &mut StepBuffers::default()).unwrap();
 }

@@ -26,6 +26,7 @@ mod runs;
 mod scenes;
 mod schedule;
 mod scripts;
+mod stages;
 mod standstill;
 mod start;
 #[path = "../common/statics.rs"]

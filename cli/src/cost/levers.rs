@@ -246,8 +246,8 @@ pub fn model_settings(scene: &MachineScene) -> Vec<Setting> {
 /// The scene with the steps that it has where nothing is said of accuracy, then with its own if it says something.
 pub fn usual_settings(scene: &MachineScene) -> Vec<Setting> {
     let usual = scene.with(|scene| {
-        let Solver { alpha_f, matrix_reuse, level, .. } = scene.solver;
-        follow(scene, Solver { alpha_f, matrix_reuse, level, ..Solver::default() });
+        let Solver { method, alpha_f, matrix_reuse, level, .. } = scene.solver;
+        follow(scene, Solver { method, alpha_f, matrix_reuse, level, ..Solver::default() });
     });
     let solvers = |scene: &MachineScene| -> Vec<Solver> {
         scene.bearings().into_iter().map(|(_, scene)| scene.solver).collect()

@@ -6,7 +6,6 @@ use crate::dynamics::{Boundary, StepBound, dense};
 use crate::model::structure::StructureState;
 use crate::model::{Model, link};
 use crate::numerics::hermite::Hermite;
-use crate::numerics::hht::HhtStep;
 
 /// A bearing over a step.
 pub struct Stepped<'a> {
@@ -50,10 +49,9 @@ pub fn within(
             trials[end.structure].add_link(end, &(force * link::sign(index)));
         }
     }
-    let step = HhtStep { h: part, ..HhtStep::new(0.0, h) };
     let settled = trials.into_iter().zip(structures).map(|(trial, one)| {
         let state = trial.settled(one.model, one.load);
-        finished(one, state, &step)
+        finished(one, state, part)
     });
     (bearings, settled.collect())
 }

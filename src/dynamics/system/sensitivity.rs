@@ -13,6 +13,7 @@ use crate::dynamics::{Boundary, Workspace};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::model::structure::StructureState;
+use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::Equations;
 
 /// A bearing of a system at the start of a step, and what was imposed on it at its end.
@@ -51,11 +52,11 @@ pub fn advance_perturbed<'a>(
     for (own, bearing) in aside.iter_mut().zip(bearings) {
         own.list_those_of(bearing.accepted);
     }
+    let step = HhtStep::new(bearings.first()?.model.solver.alpha_f, h);
     let steps = bearings.iter().zip(aside.iter_mut());
     let steps: Vec<_> = steps
-        .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, h, workspace))
+        .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, step, workspace))
         .collect();
-    let step = steps.first()?.step;
     let mut border = Border::default();
     SystemStep::new(steps, structures, joined, step, &mut border).residual(solution, true);
     let mut unknowns = vec![0.0; solution.len()];
@@ -67,7 +68,7 @@ pub fn advance_perturbed<'a>(
         }
         let parts = bearings.iter().zip(&states).zip(boundaries).zip(aside.iter_mut());
         let steps = parts.map(|(((bearing, state), boundary), workspace)| {
-            let mut own = BearingStep::new(bearing.model, state, boundary, h, workspace);
+            let mut own = BearingStep::new(bearing.model, state, boundary, step, workspace);
             // No residual is small enough to be left alone: only its change counts.
             own.force_tolerance = 0.0;
             own
@@ -82,13 +83,13 @@ pub fn advance_perturbed<'a>(
         }
         equations.residual(&unknowns, false);
         let trials: Vec<_> = equations.trials.iter().map(|trial| trial.end.clone()).collect();
-        let of_bearings = equations.bearing_ends();
+        let of_bearings = equations.bearing_ends(h, None);
         drop(equations);
         let parts = bearings.iter().zip(&mut states).zip(boundaries).zip(aside.iter_mut());
         for ((((bearing, state), boundary), workspace), end) in parts.zip(&of_bearings) {
-            accept(bearing.model, state, boundary, &step, (workspace, end));
+            accept(bearing.model, state, boundary, (h, &step), (workspace, end));
         }
-        ends.push(structures.iter().zip(trials).map(|(one, end)| finished(one, end, &step)).collect());
+        ends.push(structures.iter().zip(trials).map(|(one, end)| finished(one, end, h)).collect());
     }
     Some(ends)
 }

@@ -12,11 +12,12 @@ use super::super::{StepFailure, Workspace};
 use super::Part;
 use super::border::{Border, CarriedRace};
 use super::structure::{Seat, StructureLoad, StructureTrial};
+use crate::dynamics::stages::{Stage, Stages};
 use crate::model::bodies::Race;
 use crate::model::link::{self, Link, LinkForce};
 use crate::model::state::KeptMatrix;
 use crate::model::structure::{Structure, StructureState};
-use crate::numerics::arrowhead::BLOCK;
+use crate::numerics::esdirk;
 use crate::numerics::given::take_out;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{Equations, NewtonFailure};
@@ -71,6 +72,8 @@ pub struct SystemStep<'a> {
     joined: Joined<'a>,
     /// The scheme.
     pub step: HhtStep,
+    /// Accelerations that are expected of the structures in a stage.
+    expected: Option<&'a [DVector<f64>]>,
     /// First unknown of each bearing, then of each structure, and the end.
     first: Vec<usize>,
     /// First border row of each structure, and the end.
@@ -87,21 +90,34 @@ pub struct SystemStep<'a> {
 }
 
 impl<'a> SystemStep<'a> {
-    /// The equations of a step of `h` \[s] of bearings in these states.
+    /// The equations of a step of `h` \[s] of bearings in these states, or of a stage of it.
     pub fn of_parts(
         parts: &'a mut [Part<'_>],
+        stage: Option<&'a Stage<'a>>,
         structures: &'a [StructureStep<'a>],
         joined: Joined<'a>,
         h: f64,
         border: &'a mut Border,
     ) -> Self {
-        let of = |part: &'a mut Part<'_>| {
-            let Part { model, state, boundary, workspace } = part;
-            BearingStep::new(model, state, boundary, h, workspace)
+        let step = match (stage, parts.first()) {
+            (Some(_), _) => HhtStep::backward_euler(esdirk::DIAGONAL * h),
+            (None, Some(part)) => HhtStep::new(part.model.solver.alpha_f, h),
+            (None, None) => HhtStep::new(DEFAULT_ALPHA, h),
         };
-        let bearings: Vec<_> = parts.iter_mut().map(of).collect();
-        let step = bearings.first().map_or(HhtStep::new(DEFAULT_ALPHA, h), |bearing| bearing.step);
-        Self::new(bearings, structures, joined, step, border)
+        let of = |(index, part): (usize, &'a mut Part<'_>)| {
+            let Part { model, state, boundary, workspace } = part;
+            let Some(stage) = stage else {
+                return BearingStep::new(model, state, boundary, step, workspace);
+            };
+            let boundary = stage.boundaries.map_or(*boundary, |boundaries| &boundaries[index]);
+            let mut of_stage = BearingStep::new(model, &stage.starts[index], boundary, step, workspace);
+            of_stage.before = state;
+            of_stage.foreseen = Some(&stage.foreseen[index]);
+            of_stage
+        };
+        let bearings: Vec<_> = parts.iter_mut().enumerate().map(of).collect();
+        let expected = stage.map(|stage| stage.accelerations);
+        Self { expected, ..Self::new(bearings, structures, joined, step, border) }
     }
 
     /// The equations of a step of bearings whose equations are these, with structures.
@@ -119,6 +135,7 @@ impl<'a> SystemStep<'a> {
             trials,
             joined,
             step,
+            expected: None,
             first: vec![],
             rows: vec![],
             held: vec![],
@@ -144,13 +161,12 @@ impl<'a> SystemStep<'a> {
                 }))
                 .collect::<Vec<_>>()
         };
-        let of_bearing = |step: &BearingStep<'_>| BLOCK * step.start.balls.len() + step.model.border_size();
         let of_structure = |one: &StructureStep<'_>| one.model.size();
         let of_structures = self.structures.iter().map(of_structure);
         self.rows = ends(&mut of_structures.clone());
         let held = |(one, at): (&'a StructureStep<'a>, usize)| one.model.held.iter().map(move |k| at + k);
         self.held = self.structures.iter().zip(self.rows.iter().copied()).flat_map(held).collect();
-        self.first = ends(&mut self.bearings.iter().map(of_bearing).chain(of_structures));
+        self.first = ends(&mut self.bearings.iter().map(BearingStep::size).chain(of_structures));
         let bearings = self.bearings.iter().enumerate();
         let carried = |(index, step)| CarriedRace::of_bearing(index, step, self.joined.joints, &self.rows);
         self.carried = bearings.map(carried).collect();
@@ -189,8 +205,9 @@ impl<'a> SystemStep<'a> {
             of(bearing, &mut own);
             unknowns.extend(&own);
         }
-        for one in self.structures {
-            unknowns.extend(one.start.accelerations.iter());
+        for (index, one) in self.structures.iter().enumerate() {
+            let accelerations = self.expected.map_or(&one.start.accelerations, |expected| &expected[index]);
+            unknowns.extend(accelerations.iter());
         }
     }
 
@@ -320,35 +337,46 @@ impl<'a> SystemStep<'a> {
     }
 
     /// The ends of a solved step.
-    pub fn bearing_ends(&mut self) -> Vec<StepEnd> {
+    pub fn bearing_ends(&mut self, h: f64, stages: Option<&Stages>) -> Vec<StepEnd> {
         for one in &mut self.bearings {
             let Workspace { spacing, groups, .. } = &mut *one.workspace;
             spacing.iter_mut().for_each(|trial| trial.press(groups));
         }
-        let of = |one: &BearingStep<'_>| {
-            StepEnd::new(one.model, one.start, one.boundary, self.step.h, one.workspace)
+        let of = |(index, one): (usize, &BearingStep<'_>)| {
+            let powers = stages.map(|stages| stages.powers(index));
+            StepEnd::new(one.model, (one.before, powers.as_ref()), one.boundary, h, one.workspace)
         };
-        self.bearings.iter().map(of).collect()
+        self.bearings.iter().enumerate().map(of).collect()
     }
 
     /// [-] error of the step by the energy that its bearings leave unaccounted for, the largest.
-    pub fn energy_error(&self, ends: &[StepEnd]) -> f64 {
+    pub fn energy_error(&self, ends: &[StepEnd], h: f64) -> f64 {
         let of = |(one, end): (&BearingStep<'_>, &StepEnd)| {
-            end.energy_error(one.model, one.start, one.boundary, self.step.h, one.workspace)
+            end.energy_error(one.model, one.before, one.boundary, h, one.workspace)
         };
         self.bearings.iter().zip(ends).map(of).fold(0.0, larger)
     }
 
-    /// [-] local error over its tolerance: the largest of all bearings and structures.
-    pub fn local_error(&self) -> f64 {
+    /// [-] local error over its tolerance: the largest of all bearings and structures, which are in these states before the step of `h` \[s].
+    pub fn local_error(&self, before: &[StructureStep<'_>], (h, stages): (f64, Option<&Stages>)) -> f64 {
         let bearings = self.bearings.iter().map(BearingStep::local_error);
         let allowed = self.bearings.iter().map(BearingStep::allowed).reduce(Allowed::and);
-        let structures = self.structures.iter().zip(&self.trials).map(|(one, trial)| {
+        let structures = before.iter().zip(&self.trials).enumerate().map(|(index, (one, trial))| {
             let mut change = &trial.end.accelerations - &one.start.accelerations;
             one.model.held.iter().for_each(|k| change[*k] = 0.0);
-            let moved = change.component_mul(one.scales);
-            let gain = (self.step.beta - 0.5 * self.step.alpha_f - 1.0 / 6.0) * self.step.h * self.step.h;
-            let error = (moved.norm_squared() / moved.len().max(1) as f64).sqrt() * gain.abs();
+            let size = |moved: DVector<f64>| (moved.norm_squared() / moved.len().max(1) as f64).sqrt();
+            let error = match stages {
+                Some(stages) => {
+                    let mut error = stages.structure_error(index, h);
+                    one.model.held.iter().for_each(|k| error[*k] = 0.0);
+                    size(error.component_mul(one.scales))
+                }
+                None => {
+                    let gain =
+                        (self.step.beta - 0.5 * self.step.alpha_f - 1.0 / 6.0) * self.step.h * self.step.h;
+                    size(change.component_mul(one.scales)) * gain.abs()
+                }
+            };
             let force = || [(&one.model.mass * &change).component_div(one.scales).amax()];
             // A system without bearings has no tolerance.
             allowed.map_or(0.0, |allowed| allowed.square([error * error], force).sqrt())

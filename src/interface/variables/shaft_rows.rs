@@ -52,7 +52,7 @@ pub enum LinkQuantity {
     /// \[N, N m] a component of force and moment on the first gear or the shaft.
     Force(usize),
     /// Of teeth.
-    Teeth(fn(&TeethOutputs) -> f64),
+    Teeth(OfTeeth),
     /// \[J] stored.
     Stored,
     /// \[J] lost since the start.
@@ -69,6 +69,9 @@ impl LinkQuantity {
         }
     }
 }
+
+/// A quantity of teeth.
+type OfTeeth = fn(&TeethOutputs) -> f64;
 
 /// A place on the shaft, or on the housing with this index, by its index among those of its kind.
 #[derive(Clone, Copy, Debug)]
@@ -371,7 +374,7 @@ fn link(rows: &mut Vec<Variable>, (index, meshes): (usize, bool), name: &str) {
         add("normal_force", newton, what, LinkQuantity::Teeth(|teeth| teeth.normal_force));
         let what = "misalignment of the teeth in their plane of action, positive where the flank of the first gear leans into the other towards +x,";
         add("misalignment", (units::RADIAN, 1e-3), what, LinkQuantity::Teeth(|teeth| teeth.misalignment));
-        let tilting: [(&str, &str, fn(&TeethOutputs) -> f64); 4] = [
+        let tilting: [(&str, &str, OfTeeth); 4] = [
             ("first.moment.y", "first gear about its axis, y", |teeth| teeth.tilting_moments[0].y),
             ("first.moment.z", "first gear about its axis, z", |teeth| teeth.tilting_moments[0].z),
             ("second.moment.y", "second gear about its axis, y", |teeth| teeth.tilting_moments[1].y),

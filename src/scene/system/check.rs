@@ -426,9 +426,10 @@ pub fn solvers(bearings: &[MountedScene], shafts: &[ShaftSection]) -> Result<(),
     for bearing in bearings {
         alone(bearing)?;
         let own = &bearing.scene.solver;
-        if own.alpha_f != first.alpha_f || own.level != first.level || own.goal != first.goal {
-            let why = "all bearings of a system are integrated together: give alpha_f, level and an error goal in [solver] of the \
-                       system";
+        let same = own.method == first.method && own.alpha_f == first.alpha_f && own.level == first.level;
+        if !same || own.goal != first.goal {
+            let why = "all bearings of a system are integrated together: give method, alpha_f, level and an error goal in [solver] of \
+                       the system";
             return Err(SceneError::conflict("solver", why));
         }
     }
