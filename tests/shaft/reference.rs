@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::sources::{Section, Source, sources};
 
 /// Structs, and the section that each is in a file.
-const SECTIONS: [(&str, &str); 24] = [
+const SECTIONS: [(&str, &str); 27] = [
     ("Written", ""),
     ("FrameSection", "frame"),
     ("ShaftSection", "shaft"),
