@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::sources::{Section, Source, sources};
 
 /// Structs, and the section that each is in a file.
-const SECTIONS: [(&str, &str); 25] = [
+const SECTIONS: &[(&str, &str)] = &[
     ("Written", ""),
     ("FrameSection", "frame"),
     ("ShaftSection", "shaft"),
