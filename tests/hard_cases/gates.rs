@@ -64,6 +64,8 @@ pub struct Case<'a> {
     pub every: u32,
     /// Window of the means, as fractions of the points.
     pub window: [f64; 2],
+    /// Does the cage knock to and fro without rule? Where it is in the mean is then another one with any other steps: (c) leaves that out.
+    pub rattles: bool,
     /// (g).
     pub limits: Limits,
 }
@@ -96,6 +98,7 @@ impl<'a> Case<'a> {
             points,
             every: 1,
             window: [0.5, 1.0],
+            rattles: false,
             limits,
         }
     }
@@ -207,7 +210,9 @@ impl<'a> Case<'a> {
     fn change(&self, one: &[Outputs], other: &[Outputs]) -> (f64, String) {
         let index = |fraction: f64| (fraction * (one.len() - 1) as f64).round() as usize;
         let [from, to] = self.window.map(index);
-        change(&one[from..=to], &other[from..=to], 0.5 * self.scene.bearing.pitch_diameter.0)
+        let left_out = if self.rattles { ECCENTRICITY } else { "" };
+        let arm = 0.5 * self.scene.bearing.pitch_diameter.0;
+        change_but(&one[from..=to], &other[from..=to], arm, left_out)
     }
 
     fn print(&self, run: &Run, energy: f64, change: f64) {
@@ -268,12 +273,24 @@ pub fn energy_residual(history: &[Outputs]) -> f64 {
 /// (c) largest change of a window mean over the size of what it is a mean of, and which; `arm` [m] is the
 /// radius of the pitch circle.
 pub fn change(one: &[Outputs], other: &[Outputs], arm: f64) -> (f64, String) {
-    let (a, b) = (means(one, arm), means(other, arm));
+    change_but(one, other, arm, "")
+}
+
+/// The same but for the mean of a name.
+fn change_but(one: &[Outputs], other: &[Outputs], arm: f64, left_out: &str) -> (f64, String) {
+    let [a, b] = [one, other].map(|window| {
+        let mut means = means(window, arm);
+        means.retain(|mean| mean.name != left_out);
+        means
+    });
     let change = |i: usize| (a[i].mean - b[i].mean).abs() / a[i].size;
     let largest = (0..a.len()).max_by(|&i, &k| change(i).total_cmp(&change(k))).unwrap();
     let (name, was, is) = (a[largest].name, a[largest].mean, b[largest].mean);
     (change(largest), format!("{name} from {was:e} to {is:e}"))
 }
+
+/// Name of the mean of where a cage is.
+const ECCENTRICITY: &str = "mean eccentricity of the cage";
 
 struct Mean {
     name: &'static str,
@@ -311,7 +328,7 @@ fn means(window: &[Outputs], arm: f64) -> Vec<Mean> {
     }
     if window[0].cage.is_some() {
         let off = mean(&|o| o.cage.as_ref().map_or(0.0, |cage| cage.eccentricity.yz().norm()));
-        list.push(Mean { name: "mean eccentricity of the cage", mean: off, size: off.max(1e-9) });
+        list.push(Mean { name: ECCENTRICITY, mean: off, size: off.max(1e-9) });
     }
     for (i, name) in ["mean force x", "mean force y", "mean force z"].into_iter().enumerate() {
         list.push(Mean { name, mean: mean(&|o| o.inner.wrench.force[i]), size: force_size });

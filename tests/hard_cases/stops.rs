@@ -121,6 +121,8 @@ fn swings_through_zero() {
         // Both periods, so that means are those of whole ones.
         let mut case = Case::new(name, scene(base, &changes), limits(5000, 60, 200, 7.0));
         case.window = [0.0, 1.0];
+        // From 29 to 38 um, and from 26 to 39 of another build of the same equations, over eight step caps of 4.76 to 10 us: by chance 1 % apart once.
+        case.rattles = base == CAGE;
         let run = case.pass();
         // Balls follow there and back.
         let most = run.history.iter().map(|o| o.cage_speed).fold(0.0, f64::max);
