@@ -11,8 +11,10 @@ use roulement::simulation::system::System;
 use crate::fmi2_abi::*;
 use crate::system::{STEP, advance, bits, get, native_outputs, outputs, replay, run, scene, set};
 
-/// Motions: load, component, name of its rate in a package, and values at communication points, by their number.
-const MOTIONS: [(&str, &str, &str, &[(u32, f64)]); 3] = [
+/// A motion: load, component, name of its rate in a package, and values at communication points, by their number.
+type Motion = (&'static str, &'static str, &'static str, &'static [(u32, f64)]);
+
+const MOTIONS: [Motion; 3] = [
     ("press", "displacement.y", "velocity.y", &[(0, 0.0), (10, 3e-6), (30, 1e-6)]),
     ("press", "tilt.z", "tilt_rate.z", &[(0, 0.0), (20, 2e-5)]),
     ("shaker", "displacement.z", "velocity.z", &[(0, 0.0), (15, 2e-6), (25, -1e-6)]),
