@@ -53,8 +53,9 @@ def by_hand():
 
 
 def scenes():
-    """Both bearings under their preload. The right one has its x axis, and so the shaft's speed, the other way."""
-    common = {"inner.drive": "pose", "load.x.force": PRELOAD, "load.duration": 0.2, "effects.per_ball_outputs": True} | OIL
+    """Both bearings under their preload. The right one has its x axis, and so the shaft's speed, the other way. Nothing keeps the balls apart, as in
+    those of a machine (shaft.toml)."""
+    common = {"effects.cage": "none", "inner.drive": "pose", "load.x.force": PRELOAD, "load.duration": 0.2, "effects.per_ball_outputs": True} | OIL
     scene = roulement.catalogue.bearing(BEARING).with_(common)
     return {"left": scene.with_({"load.inner_speed": SPEED}), "right": scene.with_({"load.inner_speed": -SPEED} | TILT)}
 
