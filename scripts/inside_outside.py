@@ -87,8 +87,8 @@ def load(name):
 
 
 def bearings(solver):
-    """Scenes of both bearings alone, in pose drive, under their preload."""
-    common = {"inner.drive": "pose", "load.x.force": gearbox.PRELOAD, "load.duration": 1.0} | OIL
+    """Scenes of both bearings alone, in pose drive, under their preload; nothing keeps their balls apart, as in those of a machine."""
+    common = {"effects.cage": "none", "inner.drive": "pose", "load.x.force": gearbox.PRELOAD, "load.duration": 1.0} | OIL
     scene = roulement.catalogue.bearing(gearbox.BEARING).with_(common | {f"solver.{key}": value for key, value in solver.items()})
     return {side: scene.with_({"load.inner_speed": direction * gearbox.SPEED}) for side, (_, direction) in SIDES.items()}
 
