@@ -2,6 +2,7 @@
 //! order (`stages.rs`). [`system::try_step`] is the step of every machine, that of a bearing alone too.
 
 mod accept;
+mod across;
 mod ball;
 mod ball_equations;
 mod body;
@@ -22,6 +23,7 @@ mod reaction;
 mod record;
 mod repair;
 mod spacing;
+mod stage_guess;
 mod stages;
 mod step_turn;
 mod support;

@@ -11,6 +11,7 @@ use super::Boundary;
 use super::accept::powers_of_stage;
 use super::equations::BearingStep;
 use super::guess::{orbit_turns, steady_acceleration};
+use super::stage_guess::Known;
 use super::system::{Part, StructureLoad, StructureStep, SystemStep};
 use crate::model::Model;
 use crate::model::bodies::RigidBody;
@@ -18,7 +19,8 @@ use crate::model::energies::Powers;
 use crate::model::state::{BodyState, State, Trend, normalised};
 use crate::model::structure::StructureState;
 use crate::numerics::arrowhead::{BLOCK, Six};
-use crate::numerics::esdirk::{DIAGONAL, EARLIER, ERROR, PLACES, STAGES, WEIGHTS, extrapolation};
+use crate::numerics::esdirk::{DIAGONAL, EARLIER, ERROR, PLACES, STAGES, WEIGHTS};
+use crate::numerics::motion::Wrench;
 
 /// [-] what the local error of the embedded method, which is of lower order, counts: with this a tolerance leaves the errors that it leaves with HHT
 /// (`scenes/radial.toml`, dry and in oil, with a cage; without, up to three times as much).
@@ -277,17 +279,17 @@ impl Reached {
         sums
     }
 
-    /// What stages before the last have left of the equations of a ball or body, for the last to make good.
-    fn left(&self, stage: usize, index: usize) -> [Vector3<f64>; 2] {
-        let mut sums = [Vector3::zeros(); 2];
+    /// Remainder of the equations of a ball or body that a stage makes good: that of the last step and, of the last stage, those of the stages before it.
+    fn remainder(&self, stage: usize, index: usize, before: &Wrench) -> Wrench {
+        let mut sum = *before;
         if stage == STAGES - 1 {
             for (weight, moving) in WEIGHTS.iter().zip(&self.moving[..stage]) {
-                for (sum, Moving { left, .. }) in sums.iter_mut().zip(&moving[index]) {
-                    *sum += left * (weight / DIAGONAL);
-                }
+                let [force, moment] = moving[index].map(|moving| moving.left * (weight / DIAGONAL));
+                sum.force += force;
+                sum.moment += moment;
             }
         }
-        sums
+        sum
     }
 
     /// Puts the start of a stage of a step of `h` \[s] from a state.
@@ -298,9 +300,7 @@ impl Reached {
             ball.velocity = before.velocity + gain;
             ball.angular_velocity = before.angular_velocity + spin;
             (ball.acceleration, ball.angular_acceleration) = (Vector3::zeros(), Vector3::zeros());
-            let [force, moment] = self.left(stage, index);
-            ball.remainder.force = before.remainder.force + force;
-            ball.remainder.moment = before.remainder.moment + moment;
+            ball.remainder = self.remainder(stage, index, &before.remainder);
         }
         let first = before.balls.len();
         let bodies = start.bodies.iter_mut().zip(before.bodies.iter()).zip(model.bodies.iter());
@@ -316,9 +316,7 @@ impl Reached {
             at.velocity = before.velocity + gain;
             at.rate = before.rate + spin;
             (at.acceleration, at.rate_derivative) = (Vector3::zeros(), Vector3::zeros());
-            let [force, moment] = self.left(stage, index);
-            at.remainder.force = before.remainder.force + force;
-            at.remainder.moment = before.remainder.moment + moment;
+            at.remainder = self.remainder(stage, index, &before.remainder);
         }
     }
 
@@ -404,50 +402,4 @@ fn of_body(body: Option<&RigidBody>, at: &BodyState, turn: Vector3<f64>) -> [Mov
         ]
     });
     [Moving::new(at.velocity, at.acceleration, left[0]), Moving::new(turn, at.rate_derivative, left[1])]
-}
-
-/// Weights with which unknowns that are known before a stage go on to it.
-struct Known {
-    /// Of the start of the last step and its third stage.
-    old: [f64; 2],
-    /// Of the stages of this one.
-    new: [f64; STAGES - 1],
-}
-
-impl Known {
-    /// Those of a stage; `last` is the size of the last step over this one, where that counts.
-    fn new(stage: usize, last: Option<f64>) -> Self {
-        let [start, first, second, end] = PLACES;
-        let third = |ratio: f64| (second - 1.0) * ratio;
-        let (old, new): (&[f64], &[f64]) = match (stage, last) {
-            (1, None) => (&[], &[1.0]),
-            (1, Some(ratio)) => {
-                let [a, b, c] = extrapolation([-ratio, third(ratio), start], first);
-                (&[a, b], &[c])
-            }
-            (2, None) => (&[], &extrapolation([start, first], second)),
-            (2, Some(ratio)) => {
-                let [b, c, d] = extrapolation([third(ratio), start, first], second);
-                (&[0.0, b], &[c, d])
-            }
-            (_, None) => (&[], &extrapolation([start, first, second], end)),
-            (_, Some(ratio)) => {
-                let [b, c, d, e] = extrapolation([third(ratio), start, first, second], end);
-                (&[0.0, b], &[c, d, e])
-            }
-        };
-        let weight = |of: &[f64], index: usize| of.get(index).copied().unwrap_or(0.0);
-        Self { old: std::array::from_fn(|k| weight(old, k)), new: std::array::from_fn(|k| weight(new, k)) }
-    }
-
-    /// An unknown there, from those of the stages, and changes since the last step.
-    fn sum(&self, reached: &[Vec<f64>; STAGES], old: Option<(&[f64], &[f64])>, index: usize) -> f64 {
-        let Self { old: weights, new } = self;
-        let known = new.iter().zip(reached).filter(|(weight, _)| **weight != 0.0);
-        let sum = known.fold(0.0, |sum, (weight, of)| sum + weight * of[index]);
-        let start = reached[0][index];
-        old.map_or(sum, |(first, second)| {
-            sum + weights[0] * (start + first[index]) + weights[1] * (start + second[index])
-        })
-    }
 }

@@ -116,3 +116,37 @@ pub fn held(system: &System) -> Vec<[Vector3<f64>; 2]> {
     let found = found.unwrap_or_else(|why| panic!("{why}"));
     found.bearings.iter().map(|bearing| [bearing.force, bearing.moment]).collect()
 }
+
+/// Module of the gears of a pair \[m].
+pub const MODULE: f64 = 2e-3;
+
+/// Keys of a light rigid shaft.
+pub const LIGHT: &str = "mass = 2\npolar_inertia = 1e-3\ntransverse_inertia = 3e-3";
+
+/// Two rigid shafts in the ground that mesh: keys of the first shaft, of the second, of the mesh, and of both shafts; a pinion of 20 teeth and an outside gear of 40, or a
+/// ring of 60, of this helix angle \[deg], the axes apart along z in this direction.
+pub fn gear_pair(keys: [&str; 3], masses: &str, ring: bool, helix: f64, direction: f64) -> String {
+    let (teeth, sum) = if ring { ("teeth = 60, inside = true", 40.0) } else { ("teeth = 40", 60.0) };
+    let apart = direction * 0.5 * MODULE * sum / helix.to_radians().cos();
+    let shaft = |name: &str, origin: &str, keys: &str| {
+        let bearing = |side: &str, at: &str, way: &str| {
+            format!(
+                "[[bearing]]\nname = \"{name}-{side}\"\nshaft = \"{name}\"\ncatalogue = \"6205\"\n\
+                 mounting = {{ position = \"{at}\", direction = \"{way}\", preload = {{ force = \"200 N\" }} }}\n\
+                 [bearing.set]\neffects = {{ creep = \"saturated\", heathcote_slip = false }}\n"
+            )
+        };
+        format!("[[shaft]]\nname = \"{name}\"\norigin = {origin}\n{masses}\n{keys}\n")
+            + &bearing("left", "-40 mm", "+x")
+            + &bearing("right", "40 mm", "-x")
+    };
+    let one = shaft("one", "[0, 0, 0]", keys[0]);
+    let two = shaft("two", &format!("[0, 0, {apart}]"), keys[1]);
+    format!(
+        "{one}{two}[[mesh]]\nname = \"mesh\"\nnormal_module = {MODULE}\nhelix_angle = \"{helix} deg\"\n{}\n\
+         gears = [{{ shaft = \"one\", position = \"-5 mm\", teeth = 20, face_width = \"20 mm\" }}, \
+         {{ shaft = \"two\", position = 0, {teeth}, face_width = \"20 mm\" }}]\n\
+         [load]\nduration = \"5 ms\"\noutput_interval = \"100 us\"\n",
+        keys[2]
+    )
+}

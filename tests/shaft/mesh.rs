@@ -10,41 +10,17 @@ use roulement::model::link::{Law, Link};
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
 
-use crate::common::{scene, system};
+use crate::common::{LIGHT, MODULE, gear_pair, scene, system};
 
-/// A pair of 20 and 40 teeth of 2 mm, helix angle 20 degrees, axes apart along z.
-const MODULE: f64 = 2e-3;
+/// Teeth of the pair.
 const TEETH: [f64; 2] = [20.0, 40.0];
 
-/// Two rigid shafts in the ground that mesh: keys of the first shaft, of the second, of the mesh, and the helix angle \[deg].
+/// Two outside gears: keys of the first shaft, of the second, of the mesh, helix angle \[deg], keys of both, and direction of the second axis.
 fn pair(keys: [&str; 3], helix: f64, masses: &str, direction: f64) -> String {
-    let apart = direction * 0.5 * MODULE * (TEETH[0] + TEETH[1]) / helix.to_radians().cos();
-    let shaft = |name: &str, origin: &str, keys: &str| {
-        let bearing = |side: &str, at: &str, way: &str| {
-            format!(
-                "[[bearing]]\nname = \"{name}-{side}\"\nshaft = \"{name}\"\ncatalogue = \"6205\"\n\
-                 mounting = {{ position = \"{at}\", direction = \"{way}\", preload = {{ force = \"200 N\" }} }}\n\
-                 [bearing.set]\neffects = {{ creep = \"saturated\", heathcote_slip = false }}\n"
-            )
-        };
-        format!("[[shaft]]\nname = \"{name}\"\norigin = {origin}\n{masses}\n{keys}\n")
-            + &bearing("left", "-40 mm", "+x")
-            + &bearing("right", "40 mm", "-x")
-    };
-    let one = shaft("one", "[0, 0, 0]", keys[0]);
-    let two = shaft("two", &format!("[0, 0, {apart}]"), keys[1]);
-    format!(
-        "{one}{two}[[mesh]]\nname = \"mesh\"\nnormal_module = {MODULE}\nhelix_angle = \"{helix} deg\"\n{}\n\
-         gears = [{{ shaft = \"one\", position = \"-5 mm\", teeth = 20, face_width = \"20 mm\" }}, \
-         {{ shaft = \"two\", position = 0, teeth = 40, face_width = \"20 mm\" }}]\n\
-         [load]\nduration = \"5 ms\"\noutput_interval = \"100 us\"\n",
-        keys[2]
-    )
+    gear_pair(keys, masses, false, helix, direction)
 }
 
-const LIGHT: &str = "mass = 2\npolar_inertia = 1e-3\ntransverse_inertia = 3e-3";
-
-/// Force on the first gear, and the moment that its mesh exerts about its axis.
+/// Force on the first gear.
 fn on_first(system: &System) -> Vector3<f64> {
     system.outputs().links[0].state.force.fixed_rows::<3>(0).into_owned()
 }

@@ -6,39 +6,14 @@ use nalgebra::Vector3;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
 
-use crate::common::{scene, system};
+use crate::common::{LIGHT, MODULE, gear_pair, scene, system};
 
-const MODULE: f64 = 2e-3;
-const LIGHT: &str = "mass = 2\npolar_inertia = 1e-3\ntransverse_inertia = 3e-3";
 /// Nothing but their turns moves.
 const HEAVY: &str = "mass = 1e6\npolar_inertia = 1e-4\ntransverse_inertia = 1e6";
 
-/// A pinion of 20 teeth and an outside gear of 40 or a ring of 60: keys of the first shaft, of the second, of the mesh; helix angle \[deg].
+/// Two gears whose axes are apart along +z: keys of the first shaft, of the second, of the mesh; is the second one a ring; helix angle \[deg], and keys of both shafts.
 fn pair(keys: [&str; 3], ring: bool, helix: f64, masses: &str) -> String {
-    let sum = if ring { 40.0 } else { 60.0 };
-    let apart = 0.5 * MODULE * sum / helix.to_radians().cos();
-    let shaft = |name: &str, origin: &str, keys: &str| {
-        let bearing = |side: &str, at: &str, way: &str| {
-            format!(
-                "[[bearing]]\nname = \"{name}-{side}\"\nshaft = \"{name}\"\ncatalogue = \"6205\"\n\
-                 mounting = {{ position = \"{at}\", direction = \"{way}\", preload = {{ force = \"200 N\" }} }}\n\
-                 [bearing.set]\neffects = {{ creep = \"saturated\", heathcote_slip = false }}\n"
-            )
-        };
-        format!("[[shaft]]\nname = \"{name}\"\norigin = {origin}\n{masses}\n{keys}\n")
-            + &bearing("left", "-40 mm", "+x")
-            + &bearing("right", "40 mm", "-x")
-    };
-    let teeth = if ring { "teeth = 60, inside = true" } else { "teeth = 40" };
-    shaft("one", "[0, 0, 0]", keys[0])
-        + &shaft("two", &format!("[0, 0, {apart}]"), keys[1])
-        + &format!(
-            "[[mesh]]\nname = \"mesh\"\nnormal_module = {MODULE}\nhelix_angle = \"{helix} deg\"\n{}\n\
-             gears = [{{ shaft = \"one\", position = 0, teeth = 20, face_width = \"20 mm\" }}, \
-             {{ shaft = \"two\", position = 0, {teeth}, face_width = \"20 mm\" }}]\n\
-             [load]\nduration = \"5 ms\"\noutput_interval = \"100 us\"\n",
-            keys[2]
-        )
+    gear_pair(keys, masses, ring, helix, 1.0)
 }
 
 #[test]
@@ -66,6 +41,29 @@ fn closed_form_forces_of_a_pinion_in_a_ring_of_both_hands_and_directions() {
         let by_hand = [-0.5 * MODULE * 20.0 / angle.cos() * hand.x, radius * hand.x];
         assert!((first.y - by_hand[0]).abs() < 1e-6 * by_hand[0].abs(), "{first} {by_hand:?}");
         assert!((second.y - by_hand[1]).abs() < 1e-6 * by_hand[1].abs(), "{second} {by_hand:?}");
+    }
+}
+
+#[test]
+fn closed_form_misalignment_is_by_how_much_one_shaft_is_tilted_against_the_other_in_the_plane_of_action() {
+    for (turns, brakes) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)] {
+        let torque = 30.0 * turns * brakes;
+        let point = |name: &str| format!("[[shaft.point]]\nname = \"at-{name}\"\nposition = 0\n");
+        let one = format!("speed = \"{} rpm\"\n{}", 300.0 * turns, point("one"));
+        let two = format!("torque = {torque}\n{}", point("two"));
+        let system = system(&pair([&one, &two, ""], false, 20.0, LIGHT));
+        let outputs = system.outputs();
+        let tilt = outputs.points[0].tilt - outputs.points[1].tilt;
+        // A tooth of the first gear at b along x moves by b (ry x -z, rz x y) against the second. The flank that presses faces the way of the force on
+        // the second gear: along -y where the pinion drives about +x, as its teeth at +z go there, and towards +z in both cases, away from its axis.
+        let working = (20f64.to_radians().tan() / 20f64.to_radians().cos()).atan();
+        let along = -(turns * brakes);
+        let by_hand = along * working.cos() * tilt.z - working.sin() * tilt.y;
+        let found = outputs.links[0].teeth.misalignment;
+        assert!(
+            tilt.amax() > 1e-5 && (found - by_hand).abs() < 1e-9,
+            "{turns} {brakes}: {found:e} {by_hand:e}"
+        );
     }
 }
 

@@ -5,9 +5,6 @@ use crate::effects::Effects;
 /// Switch that takes an effect in or out.
 pub type Switch = Box<dyn Fn(&mut Effects)>;
 
-/// [`Twin::unsettled`] of what changes how a race vibrates: over 300 scenes of two seeds (cli/tests/studies/effect_verdicts.rs).
-pub const VIBRATION: &str = "without vibration, by which it changed the largest load in runs by up to 5.9 %";
-
 /// A scene without an effect and the same with it: one of them is the scene itself.
 pub struct Twin {
     /// Key of the effect.

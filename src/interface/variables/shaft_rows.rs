@@ -1,11 +1,12 @@
 //! The rows of a system's shaft and housings: loads and drive, turn, energies, and the motion of stations.
 
+use super::link_rows::{self, LinkRow};
 use super::{Causality, Kind, Source, Variable};
 use crate::effects::frame::FrameSection;
 use crate::scene::system::{NamedLoad, ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::{
-    HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs, TeethOutputs,
+    HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs,
 };
 
 /// Where the value of a variable of the shaft comes from.
@@ -26,7 +27,7 @@ pub enum ShaftSource {
     /// A shaft as a whole, by its index.
     Whole(usize, fn(&ShaftOutputs) -> f64),
     /// A component of what a mesh or a bearing by its stiffness does, by its index.
-    Link(usize, LinkQuantity),
+    Link(usize, fn(&LinkOutputs) -> f64),
     /// A housing as a whole, by its index.
     Housing(usize, fn(&HousingOutputs) -> f64),
     /// Force or moment that holds a motion which is given, by its index among all of them.
@@ -45,33 +46,6 @@ pub enum MotionPart {
     /// [m/s, rad/s] its rate.
     Rate,
 }
-
-/// A quantity of a mesh or of a bearing by its stiffness.
-#[derive(Clone, Copy, Debug)]
-pub enum LinkQuantity {
-    /// \[N, N m] a component of force and moment on the first gear or the shaft.
-    Force(usize),
-    /// Of teeth.
-    Teeth(OfTeeth),
-    /// \[J] stored.
-    Stored,
-    /// \[J] lost since the start.
-    Damped,
-}
-
-impl LinkQuantity {
-    fn read(self, link: &LinkOutputs) -> f64 {
-        match self {
-            Self::Force(component) => link.state.force[component],
-            Self::Teeth(get) => get(&link.teeth),
-            Self::Stored => link.state.stored,
-            Self::Damped => link.state.damped,
-        }
-    }
-}
-
-/// A quantity of teeth.
-type OfTeeth = fn(&TeethOutputs) -> f64;
 
 /// A place on the shaft, or on the housing with this index, by its index among those of its kind.
 #[derive(Clone, Copy, Debug)]
@@ -185,7 +159,7 @@ impl ShaftSource {
             }
             Self::Number(parameter) => parameter.start,
             Self::Whole(shaft, get) => get(&outputs.shafts[shaft]),
-            Self::Link(index, quantity) => quantity.read(&outputs.links[index]),
+            Self::Link(index, get) => get(&outputs.links[index]),
             Self::Housing(index, get) => get(&outputs.housings[index]),
             Self::Holding(index) => outputs.holding[index],
             Self::Given(index, MotionPart::Value) => inputs.motions[index].value,
@@ -335,7 +309,11 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         motion(&mut rows, Station::Seat(None, index), &prefix, &place, &[]);
     }
     for (index, name) in scene.link_names().enumerate() {
-        link(&mut rows, (index, index < scene.meshes.len()), name);
+        let of = if index < scene.meshes.len() { link_rows::MESH } else { link_rows::SPRING };
+        rows.extend(of.iter().map(|LinkRow { key, unit, what, get }| {
+            let (name, description) = (format!("{}.{key}", quoted(name)), format!("{what} {name}"));
+            row(name, *unit, Causality::Output, description, ShaftSource::Link(index, *get))
+        }));
     }
     for index in 0..scene.housings.len() {
         housing(scene, index, &mut rows);
@@ -349,51 +327,6 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         rows.push(row(name, unit, Causality::Parameter, description, source));
     }
     rows
-}
-
-/// Forces and energies of a mesh, or of a bearing by its stiffness.
-fn link(rows: &mut Vec<Variable>, (index, meshes): (usize, bool), name: &str) {
-    let mut add = |key: &str, unit, what: &str, quantity| {
-        let source = ShaftSource::Link(index, quantity);
-        rows.push(row(
-            format!("{}.{key}", quoted(name)),
-            unit,
-            Causality::Output,
-            format!("{what} of {name}"),
-            source,
-        ));
-    };
-    let (newton, joule) = ((units::NEWTON, 1e3), (units::JOULE, 1.0));
-    let on = if meshes { "force on the first gear" } else { "force on the shaft" };
-    for (axis, letter) in AXES.into_iter().enumerate() {
-        let what = format!("{on}, {letter} component, axes of the shaft,");
-        add(&format!("force.{letter}"), newton, &what, LinkQuantity::Force(axis));
-    }
-    if meshes {
-        let what = "force normal to the teeth, positive where the first gear drives as it turns about +x,";
-        add("normal_force", newton, what, LinkQuantity::Teeth(|teeth| teeth.normal_force));
-        let what = "misalignment of the teeth in their plane of action, positive where the flank of the first gear leans into the other towards +x,";
-        add("misalignment", (units::RADIAN, 1e-3), what, LinkQuantity::Teeth(|teeth| teeth.misalignment));
-        let tilting: [(&str, &str, OfTeeth); 4] = [
-            ("first.moment.y", "first gear about its axis, y", |teeth| teeth.tilting_moments[0].y),
-            ("first.moment.z", "first gear about its axis, z", |teeth| teeth.tilting_moments[0].z),
-            ("second.moment.y", "second gear about its axis, y", |teeth| teeth.tilting_moments[1].y),
-            ("second.moment.z", "second gear about its axis, z", |teeth| teeth.tilting_moments[1].z),
-        ];
-        for (key, of, get) in tilting {
-            let what = format!("moment of the axial force on the {of} component, axes of the shaft,");
-            add(key, (units::NEWTON_METRE, 1.0), &what, LinkQuantity::Teeth(get));
-        }
-        let what = "power lost to friction of the teeth";
-        add("friction_power", (units::WATT, 1.0), what, LinkQuantity::Teeth(|teeth| teeth.friction_power));
-    } else {
-        for (axis, letter) in [(4, "y"), (5, "z")] {
-            let what = format!("moment on the shaft, {letter} component, axes of the shaft,");
-            add(&format!("moment.{letter}"), (units::NEWTON_METRE, 1.0), &what, LinkQuantity::Force(axis));
-        }
-    }
-    add("energy.stored", joule, "energy stored in the springs", LinkQuantity::Stored);
-    add("energy.dissipated", joule, "energy lost to the damping since the start", LinkQuantity::Damped);
 }
 
 /// Energies and motion of a housing.

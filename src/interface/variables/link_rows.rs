@@ -1,0 +1,108 @@
+//! The rows of meshes, and of bearings by their stiffness.
+
+use crate::schema::variable_units::{self as units, Unit};
+use crate::simulation::system::LinkOutputs;
+
+/// A row: end of its name, unit and typical size, what it is, and its value.
+pub struct LinkRow {
+    /// End of its name.
+    pub key: &'static str,
+    /// Unit and typical size.
+    pub unit: (Unit, f64),
+    /// What it is, before the name of the link.
+    pub what: &'static str,
+    /// \[unit] value.
+    pub get: fn(&LinkOutputs) -> f64,
+}
+
+const fn row(
+    key: &'static str,
+    unit: (Unit, f64),
+    what: &'static str,
+    get: fn(&LinkOutputs) -> f64,
+) -> LinkRow {
+    LinkRow { key, unit, what, get }
+}
+
+const FORCE: (Unit, f64) = (units::NEWTON, 1e3);
+const MOMENT: (Unit, f64) = (units::NEWTON_METRE, 1.0);
+const ANGLE: (Unit, f64) = (units::RADIAN, 1e-3);
+const POWER: (Unit, f64) = (units::WATT, 1.0);
+const ENERGY: (Unit, f64) = (units::JOULE, 1.0);
+
+/// Those of a mesh.
+pub const MESH: &[LinkRow] = &[
+    row("force.x", FORCE, "force on the first gear, x component, axes of the shaft, of", |link| {
+        link.state.force[0]
+    }),
+    row("force.y", FORCE, "force on the first gear, y component, axes of the shaft, of", |link| {
+        link.state.force[1]
+    }),
+    row("force.z", FORCE, "force on the first gear, z component, axes of the shaft, of", |link| {
+        link.state.force[2]
+    }),
+    row(
+        "normal_force",
+        FORCE,
+        "force normal to the teeth, positive where the first gear drives as it turns about +x, of",
+        |link| link.teeth.normal_force,
+    ),
+    row(
+        "misalignment",
+        ANGLE,
+        "misalignment of the teeth in their plane of action, positive where the flank of the first gear leans into the other towards +x, of",
+        |link| link.teeth.misalignment,
+    ),
+    row(
+        "first.moment.y",
+        MOMENT,
+        "moment of the axial force on the first gear about its axis, y component, axes of the shaft, of",
+        |link| link.teeth.tilting_moments[0].y,
+    ),
+    row(
+        "first.moment.z",
+        MOMENT,
+        "moment of the axial force on the first gear about its axis, z component, axes of the shaft, of",
+        |link| link.teeth.tilting_moments[0].z,
+    ),
+    row(
+        "second.moment.y",
+        MOMENT,
+        "moment of the axial force on the second gear about its axis, y component, axes of the shaft, of",
+        |link| link.teeth.tilting_moments[1].y,
+    ),
+    row(
+        "second.moment.z",
+        MOMENT,
+        "moment of the axial force on the second gear about its axis, z component, axes of the shaft, of",
+        |link| link.teeth.tilting_moments[1].z,
+    ),
+    row("friction_power", POWER, "power lost to friction of the teeth of", |link| link.teeth.friction_power),
+    row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
+    row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {
+        link.state.damped
+    }),
+];
+
+/// Those of a bearing by its stiffness.
+pub const SPRING: &[LinkRow] = &[
+    row("force.x", FORCE, "force on the shaft, x component, axes of the shaft, of", |link| {
+        link.state.force[0]
+    }),
+    row("force.y", FORCE, "force on the shaft, y component, axes of the shaft, of", |link| {
+        link.state.force[1]
+    }),
+    row("force.z", FORCE, "force on the shaft, z component, axes of the shaft, of", |link| {
+        link.state.force[2]
+    }),
+    row("moment.y", MOMENT, "moment on the shaft, y component, axes of the shaft, of", |link| {
+        link.state.force[4]
+    }),
+    row("moment.z", MOMENT, "moment on the shaft, z component, axes of the shaft, of", |link| {
+        link.state.force[5]
+    }),
+    row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
+    row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {
+        link.state.damped
+    }),
+];
