@@ -28,7 +28,9 @@ def moved(simulation, k):
     simulation["inner.rotation_rate.z"] = 0.05
 
 
-def test_consistency_steps_have_the_bits_of_the_package(posed, tmp_path):
+@pytest.mark.parametrize("method", ["hht", "esdirk3"])
+def test_consistency_steps_have_the_bits_of_the_package(posed, tmp_path, method):
+    posed = posed.with_({"solver.method": method})
     fmu, references = fmu_of(posed, tmp_path, "posed")
     simulation = roulement.Simulation(posed)
     outputs = [name for name, (_, causality, _) in simulation.variables.items() if causality == "output" and not name.startswith("statistics")]
