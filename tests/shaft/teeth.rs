@@ -269,6 +269,10 @@ fn regression_teeth_that_cannot_be_are_refused_with_the_key() {
             "stiffness_variation = [{ amplitude = 0.95 }, { order = 2, amplitude = 0.95 }]",
             "the stiffness comes down to",
         ),
+        (
+            "stiffness_variation = [{ over = \"second\", values = [0, 0, -0.9, 0, 0, 0, 0, 0] }, { over = \"first\", amplitude = 0.5 }]",
+            "the stiffness comes down to",
+        ),
         ("stiffness_variation = [{ order = 2 }]", "it needs amplitude"),
         ("transmission_error = [{ amplitude = 1e-6, values = [0, 0, 0, 0] }]", "one entry for each"),
         ("friction = -0.1", "mesh.friction"),

@@ -28,6 +28,21 @@ pub enum Term {
 }
 
 impl Term {
+    /// [-] how often it closes on itself in a turn of the first gear, with a sign.
+    fn times(&self) -> f64 {
+        let (Self::Wave { times, .. } | Self::Table { times, .. }) = self;
+        *times
+    }
+
+    /// [-] shortest waves in a turn of the first gear: of a table of `n` points there are `n/4`.
+    fn waves(&self) -> f64 {
+        let own = match self {
+            Self::Wave { .. } => 1.0,
+            Self::Table { points, .. } => (*points as f64 / 4.0).max(1.0),
+        };
+        own * self.times().abs()
+    }
+
     /// Value, slope and second derivative by an angle of the first gear \[rad].
     fn at(&self, angle: f64) -> [f64; 3] {
         match self {
@@ -56,22 +71,26 @@ impl Variation {
         })
     }
 
-    /// [-] shortest waves in a turn of the first gear; none where nothing varies. A table of `n` points has `n/4` of them.
+    /// [-] shortest waves in a turn of the first gear; none where nothing varies.
     pub fn most_waves(&self) -> Option<f64> {
-        let waves = self.0.iter().map(|term| match term {
-            Term::Wave { times, .. } => times.abs(),
-            Term::Table { times, points, .. } => times.abs() * (*points as f64 / 4.0).max(1.0),
-        });
-        waves.reduce(f64::max)
+        self.0.iter().map(Term::waves).reduce(f64::max)
     }
 
-    /// Largest and smallest value, by its own points: waves at sixteen points of the shortest, over one turn.
-    pub fn range(&self) -> [f64; 2] {
-        let Some(waves) = self.most_waves() else { return [0.0; 2] };
-        let count = (16.0 * waves).ceil().clamp(16.0, 1e6) as usize;
-        let values = (0..count).map(|k| self.at(TAU * k as f64 / count as f64)[0]);
-        values
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    /// Smallest value at sixteen points of every shortest wave, wherever teeth of both gears meet: what closes over a turn of the first gear at its least,
+    /// and what closes over `turns` of it, as over a turn of the second gear, at its own.
+    pub fn least(&self, turns: f64) -> f64 {
+        let (of_first, of_second): (Vec<&Term>, Vec<&Term>) =
+            self.0.iter().partition(|term| term.times().fract() == 0.0);
+        let least = |terms: &[&Term], turns: f64| {
+            let waves = terms.iter().map(|term| term.waves()).fold(1.0, f64::max);
+            let count = (16.0 * waves * turns).ceil().clamp(16.0, 1e6) as usize;
+            let at = |k: usize| {
+                let angle = TAU * turns * k as f64 / count as f64;
+                terms.iter().fold(0.0, |sum, term| sum + term.at(angle)[0])
+            };
+            (0..count).map(at).fold(f64::INFINITY, f64::min)
+        };
+        least(&of_first, 1.0) + least(&of_second, turns)
     }
 }
 
@@ -97,6 +116,9 @@ mod tests {
             assert!((bend + 9.0 * (3.0 * angle).cos()).abs() < 1e-2);
         }
         assert_eq!([wave.most_waves(), table.most_waves()], [Some(3.0), Some(48.0)]);
-        assert!(wave.range().iter().zip([-2.0, 2.0]).all(|(found, exact)| (found - exact).abs() < 0.04));
+        assert!((wave.least(1.0) + 2.0).abs() < 0.04);
+        // A wave of each gear, of 20 and 30 teeth: their troughs meet in the second turn of the first gear.
+        let both = [1.0, -2.0 / 3.0].map(|times| Term::Wave { times, amplitude: 1.0, phase: 0.0 });
+        assert!((Variation(both.into()).least(1.5) + 2.0).abs() < 0.04);
     }
 }

@@ -167,7 +167,8 @@ fn check_varying(section: &MeshSection) -> Result<(), SceneError> {
     let terms: &[Varies<Ratio>] = &section.stiffness_variation;
     check_terms("mesh.stiffness_variation", terms, &OF_STIFFNESS)?;
     check_terms("mesh.transmission_error", &section.transmission_error, &ERROR)?;
-    let [least, _] = variation(terms, teeth(section)).range();
+    let [one, other] = teeth(section);
+    let least = variation(terms, [one, other]).least(other.abs() / one);
     if least < -1.0 {
         let why = format!(
             "the stiffness comes down to {:.4} of its mean: allowed is 0 and more (a curve swings beyond its points where they jump)",
