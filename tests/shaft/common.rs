@@ -124,8 +124,14 @@ pub const MODULE: f64 = 2e-3;
 pub const LIGHT: &str = "mass = 2\npolar_inertia = 1e-3\ntransverse_inertia = 3e-3";
 
 /// Two rigid shafts in the ground that mesh: keys of the first shaft, of the second, of the mesh, and of both shafts; a pinion of 20 teeth and an outside gear of 40, or a
-/// ring of 60, of this helix angle \[deg], the axes apart along z in this direction.
-pub fn gear_pair(keys: [&str; 3], masses: &str, ring: bool, helix: f64, direction: f64) -> String {
+/// ring of 60, of this helix angle \[deg]; the direction along z in which the axes are apart, and the place of the pinion \[m] where the gear is at 0.
+pub fn gear_pair(
+    keys: [&str; 3],
+    masses: &str,
+    ring: bool,
+    helix: f64,
+    [direction, first]: [f64; 2],
+) -> String {
     let (teeth, sum) = if ring { ("teeth = 60, inside = true", 40.0) } else { ("teeth = 40", 60.0) };
     let apart = direction * 0.5 * MODULE * sum / helix.to_radians().cos();
     let shaft = |name: &str, origin: &str, keys: &str| {
@@ -144,7 +150,7 @@ pub fn gear_pair(keys: [&str; 3], masses: &str, ring: bool, helix: f64, directio
     let two = shaft("two", &format!("[0, 0, {apart}]"), keys[1]);
     format!(
         "{one}{two}[[mesh]]\nname = \"mesh\"\nnormal_module = {MODULE}\nhelix_angle = \"{helix} deg\"\n{}\n\
-         gears = [{{ shaft = \"one\", position = \"-5 mm\", teeth = 20, face_width = \"20 mm\" }}, \
+         gears = [{{ shaft = \"one\", position = {first}, teeth = 20, face_width = \"20 mm\" }}, \
          {{ shaft = \"two\", position = 0, {teeth}, face_width = \"20 mm\" }}]\n\
          [load]\nduration = \"5 ms\"\noutput_interval = \"100 us\"\n",
         keys[2]

@@ -17,7 +17,7 @@ const TEETH: [f64; 2] = [20.0, 40.0];
 
 /// Two outside gears: keys of the first shaft, of the second, of the mesh, helix angle \[deg], keys of both, and direction of the second axis.
 fn pair(keys: [&str; 3], helix: f64, masses: &str, direction: f64) -> String {
-    gear_pair(keys, masses, false, helix, direction)
+    gear_pair(keys, masses, false, helix, [direction, -5e-3])
 }
 
 /// Force on the first gear.

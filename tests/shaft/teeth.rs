@@ -13,7 +13,7 @@ const HEAVY: &str = "mass = 1e6\npolar_inertia = 1e-4\ntransverse_inertia = 1e6"
 
 /// Two gears whose axes are apart along +z: keys of the first shaft, of the second, of the mesh; is the second one a ring; helix angle \[deg], and keys of both shafts.
 fn pair(keys: [&str; 3], ring: bool, helix: f64, masses: &str) -> String {
-    gear_pair(keys, masses, ring, helix, 1.0)
+    gear_pair(keys, masses, ring, helix, [1.0, 0.0])
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn closed_form_misalignment_is_by_how_much_one_shaft_is_tilted_against_the_other
         let by_hand = along * working.cos() * tilt.z - working.sin() * tilt.y;
         let found = outputs.links[0].teeth.misalignment;
         assert!(
-            tilt.amax() > 1e-5 && (found - by_hand).abs() < 1e-9,
+            tilt.amax() > 1e-6 && (found - by_hand).abs() < 1e-9 * tilt.amax(),
             "{turns} {brakes}: {found:e} {by_hand:e}"
         );
     }
