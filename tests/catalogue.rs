@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use roulement::catalogue::{Bearing, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, TABLE};
+use roulement::catalogue::{Bearing, Cage, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, table};
 use roulement::effects::rating::standard::Geometry;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::scene::system::SystemScene;
@@ -44,7 +44,7 @@ fn bearing(name: &str) -> Bearing {
 }
 
 fn all() -> impl Iterator<Item = Bearing> {
-    TABLE.iter().map(|row| bearing(row.designation))
+    table().map(|row| bearing(row.designation))
 }
 
 /// [-] factor f_0 of ISO 76, N and mm.
@@ -53,11 +53,13 @@ fn static_factor(geometry: &Geometry) -> f64 {
     0.2e-6 * inner.min(outer) / geometry.ball_diameter.powi(2)
 }
 
-/// f_0, where there is one, and mass \[kg] of the maker.
-fn maker(name: &str) -> (Option<f64>, f64) {
-    let line = MAKER.lines().find(|line| line.split(',').next() == Some(name)).unwrap();
+/// f_0 and mass \[kg] of the maker, where its table has them.
+fn maker(name: &str) -> [Option<f64>; 2] {
+    let Some(line) = MAKER.lines().find(|line| line.split(',').next() == Some(name)) else {
+        return [None; 2];
+    };
     let cells: Vec<&str> = line.split(',').collect();
-    (cells[1].parse().ok(), cells[2].parse().unwrap())
+    [1, 2].map(|at| cells[at].parse().ok())
 }
 
 #[test]
@@ -98,7 +100,7 @@ fn independent_data_balls_that_other_makers_take_do_not_fit_the_ratings_of_the_t
         let of = bearing(name);
         let first = of.candidates().unwrap()[0];
         let counted = Geometry { balls, ball_diameter: ball, ..first.geometry };
-        let factor = maker(name).0.unwrap();
+        let factor = maker(name)[0].unwrap();
         let [near, far] =
             [&first.geometry, &counted].map(|geometry| (static_factor(geometry) - factor).abs());
         println!("{name}: {near} {far} {}", counted.dynamic_load_rating() / of.dynamic_load_rating);
@@ -115,18 +117,25 @@ fn independent_data_balls_that_other_makers_take_do_not_fit_the_ratings_of_the_t
 
 #[test]
 fn published_number_ratings_factors_and_masses_of_the_whole_table() {
-    let (mut ratings, mut factors, mut masses) = (0.0f64, 0.0f64, [f64::INFINITY, 0.0f64]);
+    let (mut ratings, mut factors, mut masses) = ([0.0f64; 3], 0.0f64, [f64::INFINITY, 0.0f64]);
     let (mut sizes, mut fills, mut angular) = ([1.0f64, 0.0f64], [360.0f64, 0.0f64], 0.0f64);
     for of in all() {
         let best = of.candidates().unwrap()[0];
         let geometry = &best.geometry;
-        ratings = ratings.max(best.error());
-        let (factor, mass) = maker(&of.designation);
+        let size = match 1e3 * of.bore {
+            ..9.5 => 0,
+            ..165.0 => 1,
+            _ => 2,
+        };
+        ratings[size] = ratings[size].max(best.error());
+        let [factor, mass] = maker(&of.designation);
         if let Some(factor) = factor {
             factors = factors.max((static_factor(geometry) / factor - 1.0).abs());
         }
-        let mass = of.mass(&best) / mass;
-        masses = [masses[0].min(mass), masses[1].max(mass)];
+        if let Some(mass) = mass {
+            let mass = of.mass(&best) / mass;
+            masses = [masses[0].min(mass), masses[1].max(mass)];
+        }
         let size = geometry.ball_diameter / of.section_height();
         sizes = [sizes[0].min(size), sizes[1].max(size)];
         let step = 2.0 * (geometry.ball_diameter / geometry.pitch_diameter).asin();
@@ -137,16 +146,17 @@ fn published_number_ratings_factors_and_masses_of_the_whole_table() {
             angular = angular.max(geometry.balls as f64 * step / TAU);
         }
     }
-    println!("{ratings} {factors} {masses:?} {sizes:?} {fills:?} {angular}");
-    // Ratings are printed with three digits, which are rounded by up to 0.5 %.
-    assert!(ratings < 0.02, "{ratings}");
+    println!("{ratings:?} {factors} {masses:?} {sizes:?} {fills:?} {angular}");
+    // Ratings are printed with three digits, which are rounded by up to 0.5 %; those of miniatures are of steel and cages of their own, and of the
+    // largest deep-groove bearings C is by a tenth below what ISO 281 gives for balls that have C0.
+    assert!(ratings[0] < 0.05 && ratings[1] < 0.02 && ratings[2] < 0.10, "{ratings:?}");
     // The maker's factor depends on its true pitch diameter.
     assert!(factors < 0.02, "{factors}");
-    // Masses of small bearings are printed with one digit, and cages are in them.
-    assert!(masses[0] > 0.93 && masses[1] < 1.12, "{masses:?}");
+    // Masses of small bearings are printed with one digit, and cages are in them: machined ones are up to a sixth of the mass.
+    assert!(masses[0] > 0.82 && masses[1] < 1.14, "{masses:?}");
     // What the limits of the search say.
-    assert!(sizes[0] > 0.45 && sizes[1] < 0.70, "{sizes:?}");
-    assert!(fills[0] > 165.0 && fills[1] < 204.0, "{fills:?}");
+    assert!(sizes[0] > 0.42 && sizes[1] < 0.70, "{sizes:?}");
+    assert!(fills[0] > 150.0 && fills[1] < 204.0, "{fills:?}");
     assert!(angular < 0.94, "{angular}");
 }
 
@@ -197,6 +207,28 @@ fn scenes_have_an_ideal_cage_and_bearings_of_machines_none_unless_they_say_so() 
     assert_eq!(machine("set = { effects = { cage = \"ideal\" } }"), [true, false]);
 }
 
+/// A cage of pressed steel by the balls: for 9 balls of 5/16 inch two sheets of 1 mm, about 10 g.
+#[test]
+fn an_estimated_cage_runs_between_its_balls() {
+    let of = Request { designation: Some("6205".into()), cage: Cage::Estimated, ..Request::default() }
+        .bearing()
+        .unwrap();
+    let scene = Scene::parse(&of.scene(1).unwrap()).unwrap();
+    let cage = scene.effects.cage.section.as_ref().unwrap();
+    assert!((8e-3..13e-3).contains(&cage.mass.0), "{cage:?}");
+    // A thin ring.
+    let radius = (cage.inertia[0].0 / cage.mass.0).sqrt();
+    assert!((radius / 19.25e-3 - 1.0).abs() < 0.01, "{radius}");
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.advance_scripted(2e-3).unwrap();
+    let turns = simulation.outputs();
+    assert!(turns.inner.wrench.force.norm() > 0.0);
+    let none = Request { designation: Some("6205".into()), cage: Cage::None, ..Request::default() }
+        .bearing()
+        .unwrap();
+    assert!(none.scene(1).unwrap().contains("cage = \"none\""));
+}
+
 #[test]
 fn closed_form_ring_between_cylinders() {
     // Mass of a groove by Pappus: the ring and its groove make up the rectangle of revolution.
@@ -233,17 +265,110 @@ fn closed_form_ring_between_cylinders() {
 
 #[test]
 fn names_are_read_as_catalogues_write_them() {
-    for (name, designation, class) in [
-        ("6205", "6205", Clearance::CN),
-        ("6205 C3", "6205", Clearance::C3),
-        ("6205-2RS1/C4", "6205", Clearance::C4),
-        ("6205ZZ", "6205", Clearance::CN),
-        ("6805", "61805", Clearance::CN),
-        ("61905 c2", "61905", Clearance::C2),
-        ("7206b", "7206 B", Clearance::CN),
+    for (name, designation, class, hybrid, ignored) in [
+        ("6205", "6205", Clearance::CN, false, ""),
+        ("6205 C3", "6205", Clearance::C3, false, ""),
+        ("6205-2RS1/C4", "6205", Clearance::C4, false, "2RS1 (seals)"),
+        ("6205ZZ", "6205", Clearance::CN, false, "ZZ (shields)"),
+        ("6205ZZC3", "6205", Clearance::C3, false, "ZZ (shields)"),
+        ("6805", "61805", Clearance::CN, false, ""),
+        ("61905 c2", "61905", Clearance::C2, false, ""),
+        ("7206b", "7206 B", Clearance::CN, false, ""),
+        ("SKF 6205", "6205", Clearance::CN, false, ""),
+        (
+            "6205-2RS JEM",
+            "6205",
+            Clearance::CN,
+            false,
+            "2RS (seals), J (kind of cage), EM (quality for electric motors)",
+        ),
+        ("SKF 6309-2Z/C3GJN", "6309", Clearance::C3, false, "2Z (shields), GJN (grease)"),
+        ("SKF E2.6205-2Z/C3", "6205", Clearance::C3, false, "E2 (not known), 2Z (shields)"),
+        ("W 6205-2RS1", "6205", Clearance::CN, false, "W (stainless steel), 2RS1 (seals)"),
+        ("NTN 6206LLUC3/5K", "6206", Clearance::C3, false, "LLU (seals), 5K (not known)"),
+        ("FAG 6305-C-2HRS-C3", "6305", Clearance::C3, false, "C (not known), 2HRS (seals)"),
+        (
+            "NSK 6305DDUCM",
+            "6305",
+            Clearance::CN,
+            false,
+            "DDU (seals), CM (clearance of electric motors, near CN)",
+        ),
+        ("6208-P63", "6208", Clearance::C3, false, "P6 (tolerance class)"),
+        ("6210 N", "6210", Clearance::CN, false, "N (groove for a snap ring)"),
+        ("6205/HC5C3", "6205", Clearance::C3, true, ""),
+        ("HC6008-2RSR", "6008", Clearance::CN, true, "2RSR (seals)"),
+        ("16008", "16008", Clearance::CN, false, ""),
+        ("6220 M/C4", "6220", Clearance::C4, false, "M (kind of cage)"),
+        ("62/22", "62/22", Clearance::CN, false, ""),
+        ("608ZZ", "608", Clearance::CN, false, "ZZ (shields)"),
+        ("618/8", "688", Clearance::CN, false, ""),
+        (
+            "7205BECBP",
+            "7205 B",
+            Clearance::CN,
+            false,
+            "E (maker's design), CB (matching in pairs), P (kind of cage)",
+        ),
+        (
+            "7206 BEGAP",
+            "7206 B",
+            Clearance::CN,
+            false,
+            "E (maker's design), GA (matching in pairs), P (kind of cage)",
+        ),
+        ("7310-B-XL-TVP", "7310 B", Clearance::CN, false, "XL (not known), TVP (kind of cage)"),
+        ("7008 CD/P4A", "7008 C", Clearance::CN, false, "D (maker's design), P4A (tolerance class)"),
+        ("71906 ACD/P4A", "71906 AC", Clearance::CN, false, "D (maker's design), P4A (tolerance class)"),
+        (
+            "NSK 7010CTYNSULP4",
+            "7010 C",
+            Clearance::CN,
+            false,
+            "TYN (kind of cage), SUL (matching in pairs), P4 (tolerance class)",
+        ),
+        (
+            "HCB71908-C-T-P4S-UL",
+            "71908 C",
+            Clearance::CN,
+            true,
+            "T (kind of cage), P4S (tolerance class), UL (matching in pairs)",
+        ),
+        (
+            "B71910-E-T-P4S",
+            "71910 AC",
+            Clearance::CN,
+            false,
+            "B (spindle bearing), T (kind of cage), P4S (tolerance class)",
+        ),
+        ("7906A5", "71906 AC", Clearance::CN, false, ""),
+        (
+            "UC 205",
+            "6205",
+            Clearance::CN,
+            false,
+            "UC (insert bearing: sphere outside, wide inner ring and its screws)",
+        ),
+        (
+            "UCP206-20",
+            "6206",
+            Clearance::CN,
+            false,
+            "UCP (insert bearing: sphere outside, wide inner ring and its screws), 20 (not known)",
+        ),
     ] {
         let found = bearing(name);
-        assert_eq!((found.designation.as_str(), found.clearance), (designation, class), "{name}");
+        let words = found.ignored.join(", ");
+        assert_eq!(
+            (found.designation.as_str(), found.clearance, found.hybrid, words.as_str()),
+            (designation, class, hybrid, ignored),
+            "{name}"
+        );
+        let text = found.scene(1).unwrap();
+        assert_eq!(text.contains("not simulated: "), !ignored.is_empty(), "{text}");
+        assert!(text.contains(ignored), "{text}");
+        let balls = Scene::parse(&text).unwrap().ball.youngs_modulus.0;
+        assert_eq!(balls, if hybrid { 310e9 } else { 206e9 }, "{name}");
     }
     // Numbers stand in place of those of the table; ratings of another maker.
     let text = "designation = \"6205\"\ndynamic_load_rating = \"14.1 kN\"\nstatic_load_rating = 7800.0";
@@ -260,7 +385,21 @@ fn errors_name_what_was_given_and_what_is_allowed() {
     let six = "designation = \"6205\"\n";
     for (text, parts) in [
         ("designation = \"6299\"".into(), vec!["6299 is not in the table", "--list"]),
-        ("designation = \"7205 C\"".into(), vec!["7205 C is not in the table"]),
+        ("designation = \"7205 AC\"".into(), vec!["7205 AC is not in the table", "7205 A, 7205 B, 7205 C"]),
+        ("designation = \"bearing\"".into(), vec!["bearing is not in the table"]),
+        ("designation = \"\"".into(), vec![" is not in the table"]),
+        (
+            "designation = \"SKF NU 206 ECP\"".into(),
+            vec!["NU 206 ECP is a cylindrical roller bearing", "[bearing.stiffness]"],
+        ),
+        ("designation = \"32008 X/Q\"".into(), vec!["tapered roller bearing"]),
+        ("designation = \"22210E\"".into(), vec!["spherical roller bearing"]),
+        ("designation = \"51105\"".into(), vec!["thrust ball bearing"]),
+        ("designation = \"QJ 206\"".into(), vec!["four-point contact"]),
+        ("designation = \"3205 A\"".into(), vec!["double-row angular contact"]),
+        ("designation = \"1205 ETN9\"".into(), vec!["self-aligning ball"]),
+        ("designation = \"HK1612\"".into(), vec!["needle roller"]),
+        (format!("{six}cage = \"wood\""), vec!["cage", "wood", "ideal"]),
         ("bore = 0.025".into(), vec!["outside is missing"]),
         (format!("{six}clearance = \"C9\""), vec!["clearance = \"C9\"", "C2, CN, C3, C4, C5"]),
         ("designation = \"7206 B\"\nclearance = \"C3\"".into(), vec!["clearance", "contact angle instead"]),
@@ -288,31 +427,52 @@ fn errors_name_what_was_given_and_what_is_allowed() {
     );
 }
 
+/// Of each series the bores, and the largest differences to the maker's ratings, factors and masses.
 #[test]
 fn regression_table_of_the_document() {
-    let rows: Vec<tables::Row> = all()
-        .zip(&TABLE)
-        .map(|(of, row)| {
-            let candidates = of.candidates().unwrap();
-            let [first, second] = [0, 1].map(|index: usize| candidates[index].to_string());
-            let (factor, mass) = maker(&of.designation);
-            let factor = factor.map_or("-".into(), |factor| {
-                format!("{:.1} / {factor:.1}", static_factor(&candidates[0].geometry))
-            });
-            let mass = format!("{:.3} / {mass}", of.mass(&candidates[0]));
-            let ratings = format!("{} / {}", row.dynamic, row.static_);
-            let dimensions = of.dimensions().replace(" mm", "");
-            tables::row(
-                format!(
-                    "{} | {dimensions} | {ratings} | {first} | {second} | {factor} | {mass}",
-                    row.designation
-                ),
-                vec![],
-                "",
-            )
+    // Bearings of a series have the same letters, and the same number but for its last two digits.
+    let series = |name: &str| {
+        let (number, letters) = name.split_once(' ').unwrap_or((name, ""));
+        let digits = if number.len() == 3 { 2 } else { number.find('/').unwrap_or(number.len() - 2) };
+        format!("{} {letters}", &number[..digits]).trim_end().to_string()
+    };
+    let mut names: Vec<String> = vec![];
+    all().map(|of| series(&of.designation)).for_each(|name| {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    });
+    let rows: Vec<tables::Row> = names
+        .iter()
+        .map(|name| {
+            let of: Vec<Bearing> = all().filter(|of| series(&of.designation) == *name).collect();
+            let best: Vec<_> = of.iter().map(|of| of.candidates().unwrap()[0]).collect();
+            let range = |values: &mut dyn Iterator<Item = f64>| {
+                let (low, high) = values
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+                if low > high { "-".to_string() } else { format!("{low:+.1} to {high:+.1} %") }
+            };
+            let bores = of.iter().map(|of| 1e3 * of.bore);
+            let (least, largest) = (bores.clone().fold(f64::INFINITY, f64::min), bores.fold(0.0, f64::max));
+            let error = |of: usize| range(&mut best.iter().map(move |best| 100.0 * best.errors[of]));
+            let by_maker = |at: usize, own: &dyn Fn(usize) -> f64| {
+                range(
+                    &mut (0..of.len())
+                        .filter_map(|i| Some(100.0 * (own(i) / maker(&of[i].designation)[at]? - 1.0))),
+                )
+            };
+            let factor = by_maker(0, &|i| static_factor(&best[i].geometry));
+            let mass = by_maker(1, &|i| of[i].mass(&best[i]));
+            let head = format!(
+                "{name} | {} | {least} to {largest} | {} | {} | {factor} | {mass}",
+                of.len(),
+                error(0),
+                error(1)
+            );
+            tables::row(head, vec![], "")
         })
         .collect();
-    let header = "bearing | d x D x B [mm] | C / C0 [kN] | first candidate | second candidate | f_0, of it / maker's | mass, of it / \
-                  maker's [kg]";
+    let header =
+        "series | bearings | bores [mm] | C of the first candidate | its C0 | f_0 | mass, without the cage";
     tables::compare("docs/catalogue.md", "catalogue", header, &rows);
 }

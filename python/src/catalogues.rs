@@ -1,7 +1,7 @@
 //! Catalogue bearings as texts of scenes.
 
 use pyo3::prelude::*;
-use roulement::catalogue::{Bearing, Request, TABLE};
+use roulement::catalogue::{Bearing, Request, table};
 use serde_json::json;
 
 use crate::failures::value;
@@ -46,5 +46,5 @@ pub fn catalogue_candidates(request: &str) -> PyResult<String> {
 /// Names of the table of common sizes.
 #[pyfunction]
 pub fn catalogue_names() -> Vec<&'static str> {
-    TABLE.iter().map(|row| row.designation).collect()
+    table().map(|row| row.designation).collect()
 }

@@ -26,7 +26,7 @@ const CLASSES: [(Clearance, &str); 5] = [
     (Clearance::C5, "C5"),
 ];
 
-/// Bores up to and including \[mm], and least and largest clearance \[um] of C2, CN, C3, C4, C5. The first row is that of 10 mm.
+/// Bores up to and including \[mm], and least and largest clearance \[um] of C2, CN, C3, C4, C5. The first row is that of bores above 2.5 mm.
 #[rustfmt::skip]
 const LIMITS: [(f64, [[f64; 2]; 5]); 15] = [
     (10.0, [[0.0, 7.0], [2.0, 13.0], [8.0, 23.0], [14.0, 29.0], [20.0, 37.0]]),
@@ -46,8 +46,8 @@ const LIMITS: [(f64, [[f64; 2]; 5]); 15] = [
     (225.0, [[2.0, 35.0], [25.0, 85.0], [75.0, 140.0], [125.0, 195.0], [175.0, 265.0]]),
 ];
 
-/// \[mm] bores that the table is of.
-const SMALLEST: f64 = 10.0;
+/// \[mm] bores that the table is of are larger.
+const SMALLEST: f64 = 2.5;
 
 impl Clearance {
     /// Reads a class by its name.
@@ -68,19 +68,6 @@ impl Clearance {
         CLASSES.iter().find(|(class, _)| *class == self).map_or("", |(_, name)| name)
     }
 
-    /// Name without a class, and the class that it ends with: "6205 C3" is a 6205.
-    pub(super) fn split(name: &str) -> (&str, Option<Self>) {
-        let ending = |(class, of): &(Self, &str)| {
-            let head = name.len().checked_sub(of.len()).and_then(|at| name.split_at_checked(at));
-            head.filter(|(head, tail)| !head.is_empty() && tail.eq_ignore_ascii_case(of))
-                .map(|(head, _)| (head, *class))
-        };
-        match CLASSES.iter().find_map(ending) {
-            Some((head, class)) => (head, Some(class)),
-            None => (name, None),
-        }
-    }
-
     /// \[m] least and largest clearance of a bearing with a bore \[m].
     ///
     /// # Errors
@@ -90,14 +77,12 @@ impl Clearance {
         // A last digit beyond is not beyond.
         let row = LIMITS.iter().find(|(largest, _)| millimetres <= largest * (1.0 + 1e-12));
         match row {
-            Some((_, limits)) if millimetres >= SMALLEST * (1.0 - 1e-12) => {
-                Ok(limits[self as usize].map(|um| um * 1e-6))
-            }
+            Some((_, limits)) if millimetres > SMALLEST => Ok(limits[self as usize].map(|um| um * 1e-6)),
             _ => Err(CatalogueError::Range {
                 key: "bore",
                 value: format!("{millimetres} mm"),
                 range: format!(
-                    "[{SMALLEST}, {}] mm, where clearance classes are known",
+                    "({SMALLEST}, {}] mm, where clearance classes are known",
                     LIMITS[LIMITS.len() - 1].0
                 ),
             }),

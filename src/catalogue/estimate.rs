@@ -15,10 +15,10 @@ pub(super) const USUAL: [f64; 2] = [0.52, 0.53];
 /// [-] outer conformity of makers whose C0 is that of the inner race alone. It matters where the ball is small against the pitch
 /// circle: there ISO 76 has the outer race with 0.53 as the weaker one.
 const CLOSE: f64 = 0.52;
-/// [-] ball diameters over the height of the section; those of the table are 0.48 to 0.67.
+/// [-] ball diameters over the height of the section; those of the table are 0.43 to 0.67.
 const SIZES: [f64; 2] = [0.35, 0.75];
 /// \[rad] most that balls fill, from the centre of the first to that of the last, where they are put in between eccentric rings; those
-/// of the table fill 170 to 202 degrees.
+/// of the table fill 153 to 205 degrees.
 const FILL: f64 = 205.0 / 360.0 * TAU;
 /// [-] most of the pitch circle that balls fill where one shoulder is low; those of the table fill up to 0.93, the rest is the cage's.
 const FILL_OF_ANGULAR_CONTACT: f64 = 0.95;
@@ -48,14 +48,16 @@ impl Candidate {
     }
 }
 
-/// \[m] diameters of balls (among those of ISO 3290-1): 1/32 inch up to two inches, 1/64 inch below one, half millimetres up to 20 mm.
+/// \[m] diameters of balls (among those of ISO 3290-1): 1/32 inch up to two inches, 1/64 inch below one, 1/16 inch up to three, half
+/// millimetres up to 20 mm.
 fn ball_diameters() -> impl Iterator<Item = f64> {
     const INCH: f64 = 25.4;
     let coarse = (2..=64).map(|n| f64::from(n) * INCH / 32.0);
+    let large = (33..=48).map(|n| f64::from(n) * INCH / 16.0);
     let fine = (3..64).step_by(2).map(|n| f64::from(n) * INCH / 64.0);
     let metric = (2..=40).map(|n| f64::from(n) * 0.5);
     // The f64 nearest to the decimal number, as scenes have it: the millionth part of a millimetre is the last digit of 1/64 inch.
-    coarse.chain(fine).chain(metric).map(|millimetres| (millimetres * 1e6).round() / 1e9)
+    coarse.chain(fine).chain(large).chain(metric).map(|millimetres| (millimetres * 1e6).round() / 1e9)
 }
 
 /// \[N] C0 of a bearing (ISO 76): that of the weaker race.

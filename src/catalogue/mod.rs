@@ -20,7 +20,9 @@
 //! # }
 //! ```
 
+mod cage;
 mod clearance;
+mod designation;
 mod estimate;
 mod request;
 mod rings;
@@ -31,9 +33,9 @@ use thiserror::Error;
 
 pub use clearance::Clearance;
 pub use estimate::{Candidate, STEEL_OF_ISO_76};
-pub use request::Request;
+pub use request::{Cage, Request};
 pub use rings::Ring;
-pub use table::{SOURCE, TABLE};
+pub use table::{SOURCE, table};
 
 /// A row of the table of common sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +77,12 @@ pub struct Bearing {
     pub contact_angle: f64,
     /// Class of the radial clearance of a deep-groove bearing.
     pub clearance: Clearance,
+    /// Are its balls of silicon nitride?
+    pub hybrid: bool,
+    /// Means by which a scene keeps its balls apart.
+    pub cage: Cage,
+    /// Parts of its designation that no scene has, with their meaning.
+    pub ignored: Vec<String>,
 }
 
 impl Bearing {
@@ -102,10 +110,28 @@ pub enum CatalogueError {
     Format(String),
     /// A name that the table lacks.
     #[error(
-        "{0} is not in the table, which has 60, 62, 63, 618 and 619 deep groove and 72 B, 73 B angular contact with bores of 10 to \
-         85 mm (`roulement bearing --list`); give bore, outside, width, dynamic_load_rating and static_load_rating instead"
+        "{name} is not in the table, which has {}deep groove 60, 62, 63, 160, 618, 619 (bores of 10 to 200 mm) and 60x to 69x (3 to 9 mm) \
+         and angular contact 70, 72, 73 and 719 with A (30 deg), AC (25 deg), B (40 deg), C (15 deg) as a maker has them (`roulement bearing \
+         --list`); give bore, outside, width, dynamic_load_rating and static_load_rating instead",
+        if near.is_empty() { String::new() } else { format!("{near}; ") }
     )]
-    Unknown(String),
+    Unknown {
+        /// As it was given.
+        name: String,
+        /// Names of the table with the same number.
+        near: String,
+    },
+    /// A name of a bearing that is not of balls in one row and one arc.
+    #[error(
+        "{name} is {kind}: only single-row deep-groove and angular-contact ball bearings are simulated; a machine can have it by its \
+         stiffness ([bearing.stiffness])"
+    )]
+    Kind {
+        /// As it was given.
+        name: String,
+        /// Kind of bearing, with its article.
+        kind: &'static str,
+    },
     /// Something that is needed is not given.
     #[error(
         "{0} is missing: give a name of the table, such as 6205, or bore, outside, width, dynamic_load_rating and static_load_rating"

@@ -2,15 +2,16 @@
 
 use serde::Deserialize;
 
+use super::designation::find;
 use super::text::short;
-use super::{Bearing, CatalogueError, Clearance, Entry, SOURCE, TABLE};
+use super::{Bearing, CatalogueError, Clearance, Entry, SOURCE};
 use crate::schema::units::{Angle, Force, Length};
 
 /// A bearing by name, by numbers, or both: numbers that are given stand in place of those of the table.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Request {
-    /// Name such as "6205", "7206 B", "6305 C3", "6805" (which is 61805), "6205-2RS".
+    /// Name as on the box: "6205", "7206 BECBP", "SKF 6305-2RS1/C3", "6805" (which is 61805).
     pub designation: Option<String>,
     /// \[m] bore.
     pub bore: Option<Length>,
@@ -26,29 +27,21 @@ pub struct Request {
     pub contact_angle: Option<Angle>,
     /// Class of the radial clearance of a deep-groove bearing: C2, CN, C3, C4, C5.
     pub clearance: Option<String>,
+    /// Means by which balls are kept apart: "ideal" (if not given), "estimated" or "none".
+    pub cage: Cage,
 }
 
-/// Seals and shields, which change nothing inside; longer ones first.
-const SEALS: [&str; 11] = ["2RSH", "2RSL", "2RSR", "2RS1", "2RS", "DDU", "ZZ", "VV", "DD", "2Z", "RS"];
-
-/// Row of the table by a name, and the clearance class that the name has.
-fn find(name: &str) -> Result<(&'static Entry, Option<Clearance>), CatalogueError> {
-    let letters: String = name
-        .chars()
-        .filter(|sign| !matches!(sign, ' ' | '-' | '/' | '_'))
-        .collect::<String>()
-        .to_ascii_uppercase();
-    let (plain, class) = Clearance::split(&letters);
-    let plain = SEALS.iter().find_map(|seal| plain.strip_suffix(seal)).unwrap_or(plain);
-    // Makers leave the 1 out: 6805 is 61805.
-    let long = match plain.strip_prefix('6') {
-        Some(rest) if rest.len() == 3 && (rest.starts_with('8') || rest.starts_with('9')) => {
-            format!("61{rest}")
-        }
-        _ => plain.to_string(),
-    };
-    let row = TABLE.iter().find(|row| row.designation.replace(' ', "") == long);
-    row.map(|row| (row, class)).ok_or_else(|| CatalogueError::Unknown(name.to_string()))
+/// Means by which the scene of a bearing keeps its balls apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Cage {
+    /// Even spacing, without mass, play and friction.
+    #[default]
+    Ideal,
+    /// A cage of pressed steel, estimated from the balls.
+    Estimated,
+    /// Nothing: balls touch where they meet.
+    None,
 }
 
 impl Request {
@@ -70,18 +63,16 @@ impl Request {
     /// # Errors
     /// If its name is not in the table, something is missing, or out of range.
     pub fn bearing(&self) -> Result<Bearing, CatalogueError> {
-        let (row, named) = match &self.designation {
-            Some(name) => find(name).map(|(row, class)| (Some(row), class))?,
-            None => (None, None),
-        };
+        let named = self.designation.as_deref().map(find).transpose()?;
+        let row = named.as_ref().map(|named| named.row);
         let given = |value: Option<f64>, of: fn(&Entry) -> f64, key: &'static str| {
-            value.or(row.map(of)).ok_or(CatalogueError::Missing(key))
+            value.or(row.as_ref().map(of)).ok_or(CatalogueError::Missing(key))
         };
         let contact_angle =
             self.contact_angle.map_or(row.map_or(0.0, |row| row.contact_angle.to_radians()), |angle| angle.0);
-        let class = match (&self.clearance, named) {
-            (Some(name), _) => Some(Clearance::parse(name)?),
-            (None, named) => named,
+        let class = match &self.clearance {
+            Some(name) => Some(Clearance::parse(name)?),
+            None => named.as_ref().and_then(|named| named.clearance),
         };
         if contact_angle != 0.0 && class.is_some() {
             return Err(CatalogueError::Conflict(
@@ -91,6 +82,7 @@ impl Request {
         let by_name = Self {
             designation: self.designation.clone(),
             clearance: self.clearance.clone(),
+            cage: self.cage,
             ..Self::default()
         };
         // Numbers beside a name are the user's own.
@@ -113,6 +105,9 @@ impl Request {
             )?,
             contact_angle,
             clearance: class.unwrap_or_default(),
+            hybrid: named.as_ref().is_some_and(|named| named.hybrid),
+            cage: self.cage,
+            ignored: named.map(|named| named.ignored).unwrap_or_default(),
         };
         bearing.check()?;
         Ok(bearing)

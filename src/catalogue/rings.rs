@@ -7,7 +7,7 @@ use super::{Bearing, Candidate};
 /// [kg/m3] density of bearing steel.
 const DENSITY: f64 = 7800.0;
 /// [-] height of the shoulders over the groove's bottom, over the ball diameter. Whole bearings of the table then have the maker's
-/// masses within -6 and +11 % (`tests/catalogue.rs`).
+/// masses within -17 and +13 %, without the cage (`tests/catalogue.rs`).
 pub(super) const SHOULDER: f64 = 0.2;
 
 /// A ring.

@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::estimate::USUAL;
-use super::{Bearing, Candidate, CatalogueError, rings};
+use super::{Bearing, Cage, Candidate, CatalogueError, cage, rings};
 
 /// [mm/min] speed of a scene times its pitch diameter: half of what grease-lubricated ball bearings are usually allowed.
 const SPEED: f64 = 250_000.0;
@@ -47,6 +47,7 @@ impl Bearing {
     /// Description in a line.
     pub fn title(&self) -> String {
         let name = if self.designation.is_empty() { "Bearing" } else { &self.designation };
+        let name = if self.hybrid { format!("{name} hybrid") } else { name.to_string() };
         if self.is_deep_groove() {
             let class = self.clearance.name();
             format!("{name} {class}, deep groove, {}, internal geometry estimated", self.dimensions())
@@ -97,6 +98,11 @@ impl Bearing {
             format!("# Given: boundary dimensions of ISO 15 and load ratings ({}).", self.source),
             "# What is estimated is not the maker's: measure it, or ask for it, where results depend on it."
                 .into(),
+        ];
+        if !self.ignored.is_empty() {
+            lines.push(format!("# In its name, and not simulated: {}.", self.ignored.join(", ")));
+        }
+        lines.extend([
             format!("title = {:?}", self.title()),
             String::new(),
             "[bearing]".into(),
@@ -106,7 +112,7 @@ impl Bearing {
             format!("ball_diameter = \"{} mm\"", short(1e3 * geometry.ball_diameter, 8)),
             "# Pitch diameter: estimated as midway between bore and outside diameter; spread 2 %.".into(),
             format!("pitch_diameter = \"{} mm\"", short(1e3 * geometry.pitch_diameter, 8)),
-        ];
+        ]);
         if self.is_deep_groove() {
             // Bearings are checked for their bore.
             let [least, largest] = self.clearance.limits(self.bore).unwrap_or_default().map(|of| 1e6 * of);
@@ -134,6 +140,19 @@ impl Bearing {
             format!("# Conformities: estimated as those that ISO 281 and ISO 76 are of{close}; spread 0.505 to 0.54."),
             format!("inner_conformity = {inner_conformity}"),
             format!("outer_conformity = {outer_conformity}"),
+        ]);
+        if self.hybrid {
+            lines.extend([
+                "".into(),
+                "# Balls of silicon nitride.".into(),
+                "[ball]".into(),
+                "youngs_modulus = \"310 GPa\"".into(),
+                "poisson_ratio = 0.26".into(),
+                "density = \"3200 kg/m^3\"".into(),
+                "thermal_expansion = \"3.2e-6 1/K\"".into(),
+            ]);
+        }
+        lines.extend([
             String::new(),
             "# Load ratings of the catalogue.".into(),
             "[rating]".into(),
@@ -141,9 +160,19 @@ impl Bearing {
             format!("static_load_rating = \"{static_} kN\""),
             String::new(),
             "[effects]".into(),
-            "cage = \"ideal\"                # chosen: balls at even spacing; with \"none\" they touch where they meet".into(),
+            match self.cage {
+                Cage::Ideal => "cage = \"ideal\"                # chosen: balls at even spacing; with \"none\" they touch where they meet",
+                Cage::Estimated => "cage = true                   # chosen",
+                Cage::None => "cage = \"none\"                 # chosen: balls touch where they meet",
+            }
+            .into(),
             "damping = \"0.02 s/m\"           # estimated: bouncing of balls ends within about 1 ms; spread a factor of 3".into(),
             String::new(),
+        ]);
+        if self.cage == Cage::Estimated {
+            lines.extend(cage::section(geometry));
+        }
+        lines.extend([
             "[inner]".into(),
             "drive = \"wrench\"".into(),
             format!(

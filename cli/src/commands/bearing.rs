@@ -5,14 +5,14 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use roulement::catalogue::{Bearing, Request, SOURCE, TABLE};
+use roulement::catalogue::{Bearing, Request, SOURCE, table};
 
 use super::say;
 
 /// Options of `roulement bearing`.
 #[derive(Args)]
 pub struct Options {
-    /// Name, such as 6205, "6305 C3" or "7206 B"; or give the numbers below, which stand in place of those of the table.
+    /// Name as on the box, such as 6205, "SKF 6305-2RS1/C3" or 7206BECBP; or give the numbers below, which stand in place of those of the table.
     designation: Vec<String>,
     /// Bore, such as "25 mm".
     #[arg(long)]
@@ -35,6 +35,10 @@ pub struct Options {
     /// Class of the radial clearance of a deep-groove bearing: C2, CN, C3, C4, C5.
     #[arg(long)]
     clearance: Option<String>,
+    /// Means by which balls are kept apart: ideal (even spacing, without mass, play and friction), estimated (a cage of pressed steel, from
+    /// the balls) or none.
+    #[arg(long, value_name = "CAGE")]
+    cage: Option<String>,
     /// List the balls that come near both load ratings, with their errors, and write no scene.
     #[arg(long)]
     candidates: bool,
@@ -62,10 +66,11 @@ impl Options {
             ("static_load_rating", &self.static_load_rating),
             ("contact_angle", &self.contact_angle),
             ("clearance", &self.clearance),
+            ("cage", &self.cage),
         ] {
             let Some(value) = value else { continue };
             // A bare number is one in SI; names are texts.
-            let number = value.parse().ok().filter(|_| !matches!(key, "designation" | "clearance"));
+            let number = value.parse().ok().filter(|_| !matches!(key, "designation" | "clearance" | "cage"));
             text.insert(key.into(), number.map_or_else(|| value.clone().into(), toml::Value::Float));
         }
         Ok(Request::parse(&text.to_string())?)
@@ -101,7 +106,7 @@ fn list() -> String {
         "load ratings: {SOURCE}\n\n{:<12} {:>4} {:>7} {:>5} {:>9} {:>9}\n",
         "name", "bore", "outside", "width", "C [kN]", "C0 [kN]"
     );
-    for row in &TABLE {
+    for row in table() {
         let (name, bore, outside, width) = (row.designation, row.bore, row.outside, row.width);
         // Writing to a string cannot fail.
         let _ = writeln!(

@@ -4,9 +4,9 @@
 >>> candidates("6205")[0]["balls"]
 9
 
-A bearing is a name of the table ("6205", "6305 C3", "7206 B", "6805"), or numbers in SI or texts with a unit: `bore`, `outside`,
+A bearing is a name as on the box ("6205", "SKF 6305-2RS1/C3", "7206BECBP", "6805"), or numbers in SI or texts with a unit: `bore`, `outside`,
 `width` [m], `dynamic_load_rating`, `static_load_rating` [N], `contact_angle` [rad] (0, a deep-groove bearing, if not given). Numbers
-beside a name stand in place of those of the table. `clearance` is the class of a deep-groove bearing, "C2" to "C5".
+beside a name stand in place of those of the table. `clearance` is the class of a deep-groove bearing, "C2" to "C5"; `cage` is "ideal" (if not given), "estimated" or "none".
 """
 
 import json
@@ -15,7 +15,7 @@ from . import _native
 from ._toml import to_toml
 from .scene import Scene
 
-KEYS = ("bore", "outside", "width", "dynamic_load_rating", "static_load_rating", "contact_angle", "clearance")
+KEYS = ("bore", "outside", "width", "dynamic_load_rating", "static_load_rating", "contact_angle", "clearance", "cage")
 
 
 def _request(designation, numbers):
