@@ -8,10 +8,10 @@ use nalgebra::{Matrix6, Vector3};
 
 use crate::contact::BallMotion;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::scalar::Dual;
+use crate::numerics::scalar::{Dual, WIDTH};
 
 /// Directions of differentiation.
-pub const DIRECTIONS: usize = 9;
+pub const DIRECTIONS: usize = WIDTH;
 /// First direction of the first body's rotation.
 const FIRST_ROTATION: usize = 3;
 /// First direction of the second body's rotation.

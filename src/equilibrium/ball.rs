@@ -9,15 +9,14 @@ use crate::effects::moving_frame::MovingFrame;
 use crate::model::Model;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
-use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, cross, dot, values};
+use crate::numerics::scalar::{Dual, Scalar, Single, WIDTH, constant_vector, cross, dot, values};
 
-/// Directions of differentiation: ball axial and radial, x, y, z, ry, rz of the race that moves, cage speed.
-pub const DIRECTIONS: usize = 8;
 /// First direction of the shared unknowns: those of all balls together.
 pub const SHARED: usize = 2;
 /// Number of shared unknowns.
 pub const N_SHARED: usize = 6;
-type D = Dual<DIRECTIONS>;
+/// A number with its derivatives by ball axial and radial, x, y, z, ry, rz of the race that moves, cage speed; the rest is zero.
+pub type D = Dual<WIDTH>;
 /// A number with its derivatives by the ball's own coordinates.
 type Own = Dual<SHARED>;
 

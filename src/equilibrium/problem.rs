@@ -2,8 +2,8 @@
 
 use nalgebra::{SMatrix, SymmetricEigen};
 
-use super::ball::{BallBalance, N_SHARED, Place, SHARED};
-use super::trial::{D, SharedMatrix, SharedVector, Trial, evaluate, finish, outside_of_race};
+use super::ball::{BallBalance, D, N_SHARED, Place, SHARED};
+use super::trial::{SharedMatrix, SharedVector, Trial, evaluate, finish, outside_of_race};
 use super::{Equilibrium, EquilibriumError, EquilibriumInput, MAX_APPROACH, Prescribed};
 use crate::contact::form::SHORTEST;
 use crate::model::bodies::Race;

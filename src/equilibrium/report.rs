@@ -7,12 +7,12 @@ use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 use super::Equilibrium;
-use super::ball::BallBalance;
+use super::ball::{BallBalance, D};
 use crate::contact::geometry::GrooveContact;
 use crate::contact::shoulder::largest_share;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
-use crate::numerics::scalar::{Dual, Single, values};
+use crate::numerics::scalar::{Single, values};
 
 /// Reported quantities of a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,17 +49,17 @@ impl BallReport {
     /// Report of a settled ball; `inner_axis` is the inner race's axis relative to the outer race.
     pub(super) fn new(model: &Model, balance: &BallBalance, inner_axis: &Vector3<f64>) -> Self {
         // atan2(axial, radial) of the force on the ball for the inner race, of the opposite for the outer.
-        let angle = |contact: &GrooveContact<Dual<8>>, axis: &Vector3<f64>, sign: f64| {
+        let angle = |contact: &GrooveContact<D>, axis: &Vector3<f64>, sign: f64| {
             let normal = values(&contact.normal) * sign;
             normal.dot(axis).atan2(normal.dot(&values(&contact.radial)))
         };
         let contacts = model.contacts(&Conditions::default());
-        let share = |race: Race, contact: &GrooveContact<Dual<8>>, towards_x: f64| {
+        let share = |race: Race, contact: &GrooveContact<D>, towards_x: f64| {
             let shape = contacts[race].shape.at(contact.circumferential_curvature.value);
             let semi_axis = shape.semi_axis_transverse * contact.approach.value.max(0.0).sqrt();
             model.bearing.shoulder(race, towards_x, semi_axis).0
         };
-        let span = |race: Race, contact: &GrooveContact<Dual<8>>| {
+        let span = |race: Race, contact: &GrooveContact<D>| {
             let semi_axis =
                 contacts[race].shape.at(contact.circumferential_curvature.value).semi_axis_rolling;
             let out = contact.normal.dot(&contact.radial).value * model.bearing.ball.radius;

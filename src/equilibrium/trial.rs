@@ -3,8 +3,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::ball::{
-    BallBalance, DIRECTIONS, N_SHARED, Place, SHARED, Shared, balance, bottom_of_outer_groove, middle_of_gap,
-    settle,
+    BallBalance, D, N_SHARED, Place, SHARED, Shared, balance, bottom_of_outer_groove, middle_of_gap, settle,
 };
 use super::{BallEquilibrium, BallReport, Equilibrium, EquilibriumError, EquilibriumInput};
 use crate::effects::moving_frame::MovingFrame;
@@ -17,10 +16,8 @@ use crate::numerics::motion::Pose;
 use crate::numerics::rotation::{
     conformal_product, from_rotation_vector, rotate, tilt_to, to_quaternion, turn,
 };
-use crate::numerics::scalar::{Dual, Scalar, Single, constant_vector, cross, values};
+use crate::numerics::scalar::{Scalar, Single, constant_vector, cross, values};
 
-/// A number with its derivatives.
-pub type D = Dual<DIRECTIONS>;
 /// Displacements x, y, z, ry, rz and cage speed.
 pub type SharedVector = SVector<f64, N_SHARED>;
 /// Derivatives by them.

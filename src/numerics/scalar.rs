@@ -276,6 +276,10 @@ impl Scalar for f64 {
     }
 }
 
+/// Directions of derivatives by two bodies: translation of the first, rotation of both. Equilibria have one less and take the same
+/// number, as every number of directions compiles its own copy of the contact (0.1 MB).
+pub const WIDTH: usize = 9;
+
 /// A number and its derivatives in `N` directions (forward-mode differentiation).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<const N: usize> {
