@@ -31,8 +31,32 @@ def test_consistency_same_bits_as_the_command_line(thrust, printed):
     assert np.array_equal(results["ball.outer.load"][:, 4], table["ball[5].outer.load"])
     power = results.mean("friction power")
     assert power in summary["means"]["quantities"] and power["unit"] == "W"
-    with pytest.raises(KeyError, match="ball.inner.lod"):
+    with pytest.raises(KeyError, match="ball.inner.lod is no column of this run; near are ball.inner.load"):
         results["ball.inner.lod"]
+    with pytest.raises(KeyError, match="near are friction power"):
+        results.mean("Friction_power")
+
+
+def test_scenes_by_the_path_of_their_file(thrust, tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(thrust.source)
+    results, by_path = roulement.run(thrust), roulement.run(str(path))
+    assert np.array_equal(bits(results["inner.force"]), bits(by_path["inner.force"]))
+    assert np.array_equal(roulement.equilibrium(path).load, roulement.equilibrium(thrust).load)
+    assert roulement.effects(path) == roulement.effects(thrust)
+    simulation = roulement.Simulation(path)
+    with pytest.raises(KeyError, match="near are .*inner.force"):
+        simulation["inner.forze"]
+    with pytest.raises(OSError):
+        roulement.run(tmp_path / "none.toml")
+
+
+def test_what_a_notebook_shows(thrust):
+    scene = thrust.with_(title="5 < 6")._repr_html_()
+    assert "<b>5 &lt; 6</b>" in scene and "[bearing]" in scene
+    shown = roulement.run(thrust)._repr_html_()
+    assert "21 rows over 0 to 2 ms" in shown
+    assert "<td>friction power</td>" in shown and "<td>W</td>" in shown
 
 
 def test_columns_window_and_progress(thrust):

@@ -11,7 +11,7 @@ All numbers are SI, angles in radians. Results have the same bits as those of th
 
 import importlib
 
-from . import catalogue, coupling, load_cases, shaft
+from . import catalogue, coupling, load_cases, shaft, vibration
 from .contacts import LAWS, contact
 from .cost import cost
 from .equilibrium import Equilibrium, MachineEquilibrium, equilibrium
@@ -43,6 +43,7 @@ __all__ = [
     "run",
     "shaft",
     "sweep",
+    "vibration",
 ]
 
 

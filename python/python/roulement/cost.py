@@ -4,6 +4,7 @@ import csv
 from pathlib import Path
 
 from . import _native
+from .scene import Scene
 
 
 def cost(scene, output, name="scene", threads=None):
@@ -12,6 +13,6 @@ def cost(scene, output, name="scene", threads=None):
 
     Returns the rows of `cost.csv`, a dictionary each; plots and advice are beside it.
     """
-    _native.cost(scene._native, name, Path(output), threads)
+    _native.cost(Scene.of(scene)._native, name, Path(output), threads)
     with open(Path(output) / "cost.csv", newline="") as table:
         return list(csv.DictReader(table))

@@ -6,6 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from .scene import Scene
+
 
 @dataclass(frozen=True)
 class Equilibrium:
@@ -52,14 +54,14 @@ class MachineEquilibrium:
 
 
 def equilibrium(scene, gyroscopic=None):
-    """Solves the quasi-static equilibrium of a scene at time 0: an `Equilibrium` of a bearing, a `MachineEquilibrium` of shafts.
+    """Solves the quasi-static equilibrium of a scene, or of that of a file by its path, at time 0: an `Equilibrium` of a bearing, a `MachineEquilibrium` of shafts.
 
     `gyroscopic` says how the gyroscopic moment of the balls is carried: by friction at the outer race alone
     ("outer-race-control", as if not given), at the inner one alone ("inner-race-control"), for each ball at the one where spin would cost more
     ("least-heat"), not at all ("none"), or by friction at both races ("friction", on shafts the only one).
     Raises RuntimeError if there is none.
     """
-    report = json.loads(scene._native.equilibrium(gyroscopic))
+    report = json.loads(Scene.of(scene)._native.equilibrium(gyroscopic))
     if "bearings" in report:
         return _of_machine(report)
     return Equilibrium(

@@ -1,3 +1,4 @@
+from os import PathLike
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, Literal
@@ -29,6 +30,6 @@ class MachineEquilibrium:
     report: dict[str, Any]
 
 def equilibrium(
-    scene: Scene,
+    scene: Scene | str | PathLike[str],
     gyroscopic: Literal["outer-race-control", "inner-race-control", "least-heat", "none", "friction"] | None = None,
 ) -> Equilibrium | MachineEquilibrium: ...

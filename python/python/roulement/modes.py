@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import _native
+from .scene import Scene
 
 
 @dataclass(frozen=True)
@@ -73,5 +74,5 @@ def modes(scene, time=0.0, after=2e-3, up_to=None, speeds=12):
     Raises ValueError for a number out of range, RuntimeError if the machine cannot start or run at its own speed.
     """
     limit = None if up_to is None else float(up_to)
-    report = json.loads(_native.modes(scene._native, float(time), float(after), limit, speeds))
+    report = json.loads(_native.modes(Scene.of(scene)._native, float(time), float(after), limit, speeds))
     return Modes(own=_motions(report["own"]), speeds=[_motions(row) for row in report["speeds"]], report=report)

@@ -1,3 +1,4 @@
+from os import PathLike
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,5 +27,5 @@ class Modes:
     report: dict[str, Any]
 
 def modes(
-    scene: Scene, time: float = 0.0, after: float = 2e-3, up_to: float | None = None, speeds: int = 12
+    scene: Scene | str | PathLike[str], time: float = 0.0, after: float = 2e-3, up_to: float | None = None, speeds: int = 12
 ) -> Modes: ...

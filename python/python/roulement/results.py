@@ -4,10 +4,13 @@ import json
 import math
 import re
 import sys
+from html import escape
 
 import numpy as np
 
 from . import _native
+from ._names import unknown
+from .scene import Scene
 
 _BALL = re.compile(r"ball\[(\d+)\]\.(.*)")
 
@@ -49,7 +52,7 @@ class Results:
         else:
             found = [of for of in (f"{name}.{axis}" for axis in "wxyz") if of in self._places]
         if not found:
-            raise KeyError(f"{name} is no column; names are in `names`")
+            raise unknown(name, "column of this run", {_quantity(of) for of in self._places} | set(self._places))
         return found
 
     @property
@@ -66,7 +69,8 @@ class Results:
         before = f"{name}."
         own = [column for column in self.names if column.startswith(before)]
         if name not in self.summary or not own:
-            raise KeyError(f"{name} is no bearing of this run, or has no columns in it")
+            bearings = [of for of in self.summary if any(column.startswith(f"{of}.") for column in self.names)]
+            raise unknown(name, "bearing of this run with columns in it", bearings)
         names = [("time", self.units["time"])] + [(column[len(before):], self.units[column]) for column in own]
         return Results(names, self._table[:, [0, *(self._places[column] for column in own)]], self.summary[name])
 
@@ -78,7 +82,7 @@ class Results:
         for mean in self.summary["means"]["quantities"]:
             if mean["quantity"] == quantity:
                 return mean
-        raise KeyError(f"{quantity} has no mean; those there are: {[m['quantity'] for m in self.summary['means']['quantities']]}")
+        raise unknown(quantity, "quantity with a mean", [mean["quantity"] for mean in self.summary["means"]["quantities"]])
 
     def phase(self, name):
         """A phase of the run, `[[phase]]` of its scene, as a dictionary: its window [s], whether it has settled, heat of friction [J],
@@ -88,11 +92,25 @@ class Results:
         for phase in summary["phases"]:
             if phase["name"] == name:
                 return phase
-        raise KeyError(f"{name} is no phase of this run; those there are: {[phase['name'] for phase in summary['phases']]}")
+        raise unknown(name, "phase of this run", [phase["name"] for phase in summary["phases"]])
 
     def __repr__(self):
         rows, columns = self._table.shape
         return f"Results({rows} rows, {columns} columns)"
+
+    def _repr_html_(self):
+        """Means of the second half of the run, of a shaft those of each part."""
+        parts = {"": self.summary} | {name: part for name, part in self.summary.items() if isinstance(part, dict) and "means" in part}
+        rows = [
+            f"<tr><td>{escape(name)}</td><td>{escape(mean['quantity'])}</td><td>{_short(mean['mean'])}</td>"
+            f"<td>{_short(mean['interval_95'])}</td><td>{escape(mean['unit'])}</td></tr>"
+            for name, part in parts.items()
+            for mean in part.get("means", {}).get("quantities", [])
+        ]
+        head = "".join(f"<th>{of}</th>" for of in ("", "quantity", "mean", "+-", "unit"))
+        of, columns = self._table.shape
+        span = f"{1e3 * self.time[0]:.6g} to {1e3 * self.time[-1]:.6g} ms" if of else "no time"
+        return f"<p>{of} rows over {span}, {columns} columns</p><table><tr>{head}</tr>{''.join(rows)}</table>"
 
     def to_pandas(self):
         """A pandas DataFrame over the time; units in `attrs["units"]`. Needs pandas."""
@@ -131,6 +149,16 @@ class Results:
         _native.write_parquet(str(path), list(self.units.items()), np.ascontiguousarray(self._table))
 
 
+def _quantity(column):
+    """Name by which the columns of all balls, or of all components, are read."""
+    return re.sub(r"ball\[\d+\]", "ball", re.sub(r"\.[wxyz]$", "", column))
+
+
+def _short(value):
+    """A number as it is shown; nothing where there is none."""
+    return "" if value is None or not math.isfinite(value) else f"{value:.4g}"
+
+
 def _bar(time, duration):
     """One line of progress."""
     done = time / duration
@@ -140,7 +168,7 @@ def _bar(time, duration):
 
 
 def run(scene, columns=(), window=(None, None), progress=None):
-    """Simulates a scene and returns its `Results`, with the same bits as `roulement run`.
+    """Simulates a scene, or that of a file by its path, and returns its `Results`, with the same bits as `roulement run`.
 
     `columns` are names with `*` for any characters, all if none is given; `window` the times [s] between which rows are kept.
     `progress` is True for a line on standard error, or a function of time reached and duration [s]. With
@@ -151,6 +179,6 @@ def run(scene, columns=(), window=(None, None), progress=None):
     begin, end = window
     limits = (-math.inf if begin is None else float(begin), math.inf if end is None else float(end))
     columns = [columns] if isinstance(columns, str) else list(columns)
-    names, table, summary = _native.run(scene._native, columns, limits, _bar if progress is True else progress or None)
+    names, table, summary = _native.run(Scene.of(scene)._native, columns, limits, _bar if progress is True else progress or None)
     array = np.frombuffer(table, dtype=float).reshape(-1, len(names))
     return Results(names, array, json.loads(summary))

@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+from html import escape
 from pathlib import Path
 
 from . import _native
@@ -23,6 +24,11 @@ class Scene:
     def load(cls, path):
         """Reads a scene file. Raises OSError if it cannot be read."""
         return cls(_native.Scene.load(path))
+
+    @classmethod
+    def of(cls, scene):
+        """A scene as it is, or that of a file, by its path: what functions take that need a scene."""
+        return scene if isinstance(scene, cls) else cls.load(Path(scene))
 
     @classmethod
     def parse(cls, text):
@@ -65,6 +71,9 @@ class Scene:
     def __repr__(self):
         return f"Scene({self.title!r})"
 
+    def _repr_html_(self):
+        return f"<b>{escape(self.title)}</b><pre>{escape(self.source)}</pre>"
+
     def __reduce__(self):
         return Scene.parse, (self.source,)
 
@@ -73,7 +82,7 @@ def effects(scene):
     """Which effects of a scene are on, and which that are off would matter: a dictionary with `settings` by effect and
     `estimates`, a list with `subject`, `standing`, `matters`, `value`, `threshold`, `unit`, `sentence` and what to `write`. Of a shaft one
     of each bearing, by its name."""
-    return json.loads(scene._native.effects())
+    return json.loads(Scene.of(scene)._native.effects())
 
 
 def cage(scene, jobs=None):
@@ -82,7 +91,7 @@ def cage(scene, jobs=None):
     losses, the `way` of its centre over its play, and others. `jobs` runs at a time, as many as there are cores if not given.
 
     Raises RuntimeError if there is no cage."""
-    return json.loads(scene._native.cage(jobs))
+    return json.loads(Scene.of(scene)._native.cage(jobs))
 
 
 def find_libraries():
@@ -116,5 +125,5 @@ def package(scene, path, library=None, name=None, columns=()):
         library = find_libraries()
     elif isinstance(library, (str, os.PathLike)):
         library = [library]
-    _native.package(scene._native, Path(path), [Path(of) for of in library], name or Path(path).stem, list(columns))
+    _native.package(Scene.of(scene)._native, Path(path), [Path(of) for of in library], name or Path(path).stem, list(columns))
     return Path(path)

@@ -3,6 +3,8 @@
 import numpy as np
 
 from . import _native
+from ._names import unknown
+from .scene import Scene
 
 
 class Signal:
@@ -38,6 +40,7 @@ class Simulation:
     """
 
     def __init__(self, scene, start=0.0, values=None):
+        scene = Scene.of(scene)
         table = _native.Simulation.variables(scene._native)
         self._table = {name: (place, unit, causality, text) for place, (name, unit, causality, text) in enumerate(table)}
         pairs = []
@@ -62,7 +65,7 @@ class Simulation:
         else:
             found = [self._table[of][0] for of in (f"{name}.{axis}" for axis in "wxyz") if of in self._table]
         if not found:
-            raise KeyError(f"{name} is no variable of this simulation; names are in `variables`")
+            raise unknown(name, "variable of this simulation", self._table)
         return found
 
     @property

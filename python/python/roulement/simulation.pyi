@@ -1,3 +1,4 @@
+from os import PathLike
 from typing import Mapping, Sequence
 
 import numpy as np
@@ -15,7 +16,7 @@ class Signal:
 
 class Simulation:
     messages: list[str]
-    def __init__(self, scene: Scene, start: float = 0.0, values: Mapping[str, ArrayLike] | None = None) -> None: ...
+    def __init__(self, scene: Scene | str | PathLike[str], start: float = 0.0, values: Mapping[str, ArrayLike] | None = None) -> None: ...
     @property
     def variables(self) -> dict[str, tuple[str, str, str]]: ...
     def signal(self, name: str) -> Signal: ...
