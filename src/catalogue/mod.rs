@@ -102,6 +102,17 @@ impl Bearing {
     }
 }
 
+/// Scene of a bearing by its designation, as a text, and the mass of its outer ring \[kg].
+///
+/// # Errors
+/// If there is no such bearing, in words.
+pub fn scene_of(designation: &str) -> Result<(String, f64), String> {
+    let request = Request { designation: Some(designation.into()), ..Request::default() };
+    let bearing = request.bearing().map_err(|why| why.to_string())?;
+    let found = bearing.scene(1).and_then(|scene| Ok((scene, bearing.outer_ring_mass()?)));
+    found.map_err(|why| why.to_string())
+}
+
 /// Why there is no catalogue bearing.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum CatalogueError {

@@ -61,7 +61,7 @@ impl Instance {
     pub fn new(guid: &str, location: &str, log: Log) -> Outcome<Self> {
         let path = resources::path(location)?.join(resources::SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
-        let scene = MachineScene::load(&path).map_err(|why| failed(why.to_string()))?;
+        let scene = MachineScene::of_package(&path).map_err(|why| failed(why.to_string()))?;
         let instance = Self::of_machine(scene, log)?;
         let own = &instance.guid;
         if guid != own {

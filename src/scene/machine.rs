@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::system::SystemScene;
 use super::{Scene, SceneError, Solver};
-use crate::schema::{PhaseSection, regular};
+use crate::schema::{DutySection, PhaseSection, regular};
 
 /// Machine that a scene file describes.
 #[derive(Clone, Debug)]
@@ -23,6 +23,18 @@ impl MachineScene {
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         if regular::text(path).is_ok_and(|text| SystemScene::is_system(&text)) {
             return SystemScene::load(path).map(Self::from);
+        }
+        Scene::load(path).map(Self::from)
+    }
+
+    /// Reads the scene file of a package, a text that stands alone as [`MachineScene::source`] does.
+    ///
+    /// # Errors
+    /// See [`SceneError`]; with the line.
+    pub fn of_package(path: &Path) -> Result<Self, SceneError> {
+        let text = regular::scene(path)?;
+        if SystemScene::is_system(&text) {
+            return SystemScene::of_package(&text, &path.display().to_string()).map(Self::from);
         }
         Scene::load(path).map(Self::from)
     }
@@ -122,6 +134,22 @@ impl MachineScene {
             Self::Bearing(scene) => &scene.phase,
             Self::Shaft(scene) => &scene.phases,
         }
+    }
+
+    /// Loads over its life.
+    pub fn duty(&self) -> &[DutySection] {
+        match self {
+            Self::Bearing(scene) => &scene.duty,
+            Self::Shaft(scene) => &scene.duty,
+        }
+    }
+
+    /// The scene under one of these loads.
+    ///
+    /// # Errors
+    /// If a key cannot be changed so, or the scene is refused then.
+    pub fn under(&self, load: &DutySection) -> Result<Self, SceneError> {
+        Self::edited(&Scene::edited_text(self.source(), load.changes())?)
     }
 
     /// Settings of the integration: those that steps of all bearings need.

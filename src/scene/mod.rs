@@ -26,10 +26,10 @@ use crate::effects::form::FormSection;
 pub use crate::effects::moving_frame::FrameMotion;
 use crate::effects::{film, growth, rating};
 pub use crate::schema::{
-    Accuracy, BearingSection, Components, Condition, Dependencies, Direction, Drive, ErrorGoal, ErrorOf,
-    Friction, GearSection, Giver, Group, Groups, InputGivers, Interface, Level, Load, Machine, Material,
-    Misalignment, Orientation, PhaseSection, RaceLoad, RaceSection, RotatingSection, SceneError, Schedule,
-    Sine, Solver, Start, Tilt, Translation, schedule, units,
+    Accuracy, BearingSection, Components, Condition, Dependencies, Direction, Drive, DutySection, ErrorGoal,
+    ErrorOf, Friction, GearSection, Giver, Group, Groups, InputGivers, Interface, Level, Load, Machine,
+    Material, Misalignment, Orientation, PhaseSection, RaceLoad, RaceSection, RotatingSection, SceneError,
+    Schedule, Sine, Solver, Start, Tilt, Translation, schedule, units,
 };
 use crate::schema::{Follows, explain, regular};
 pub use ranges::Ranges;
@@ -90,6 +90,9 @@ pub struct Scene {
     /// Named windows of the run, which have means and lives of their own.
     #[serde(default)]
     pub phase: Vec<PhaseSection>,
+    /// Loads over its life, each with its part of the time: `roulement rating` adds up what they take of it.
+    #[serde(default)]
+    pub duty: Vec<DutySection>,
     /// Interface of the FMU.
     #[serde(default)]
     pub interface: Interface,

@@ -5,7 +5,7 @@ use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, S
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::effects::defects::On;
 use crate::schema::numbers::Range;
-use crate::schema::{Method, Race, check_phases};
+use crate::schema::{Method, Race, check_duty, check_phases};
 
 /// The directions of a race, in the order of their conditions.
 const DIRECTIONS: [&str; 5] = ["x", "y", "z", "ry", "rz"];
@@ -21,6 +21,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     scene.effects.agree(&scene.setup())?;
     inputs(scene)?;
     load(scene)?;
+    check_duty(&scene.duty)?;
     check_phases(&scene.phase, scene.load.duration.0)
 }
 

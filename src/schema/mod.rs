@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod components;
+mod duty;
 mod error;
 pub mod explain;
 mod follow;
@@ -24,6 +25,7 @@ pub mod variable_units;
 
 pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Level, Method, Solver};
 pub use components::Components;
+pub use duty::{DutySection, check_duty};
 pub use error::SceneError;
 pub use follow::{Follows, SMALLEST_TOLERANCE};
 pub use housing::*;

@@ -126,9 +126,157 @@ fn a_shaft_has_a_life_of_each_bearing() {
     let text = String::from_utf8_lossy(&output.stdout).to_string();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let all: Vec<&str> = text.lines().filter(|line| line.starts_with("all,")).collect();
-    assert_eq!(all.len(), 2, "{text}");
-    assert_eq!(text.lines().count(), 7, "{text}");
+    // Two bearings, and the machine.
+    assert_eq!(all.len(), 3, "{text}");
+    assert_eq!(text.lines().count(), 10, "{text}");
+    // Lives by Weibull's slope of 10/9.
+    for load in ["1,", "2,", "all,"] {
+        let lines: String = text
+            .lines()
+            .take(1)
+            .chain(text.lines().filter(|line| line.starts_with(load)))
+            .collect::<Vec<_>>()
+            .join("\n");
+        let rows = table(&lines);
+        let failures: f64 = rows[..2].iter().map(|row| row[6].powf(-10.0 / 9.0)).sum();
+        assert!((rows[2][6] / failures.powf(-0.9) - 1.0).abs() < 1e-12, "{lines}");
+        assert!(
+            (rows[2][11] / (rows[0][11] + rows[1][11]) - 1.0).abs() < 1e-12 && rows[2][11] > 0.0,
+            "{lines}"
+        );
+    }
     let mean =
         |line: &&str| (line.split(',').nth(3).unwrap().parse::<f64>().unwrap() / 1500.0 - 1.0).abs() < 1e-12;
     assert!(all.iter().all(mean), "{text}");
+}
+
+/// The loads of the table above as entries of the scene.
+const DUTY: &str = r#"
+[[duty]]
+name = "slow"
+share = 0.5
+set = { load = { inner_speed = "600 rpm", y = { force = 1000 }, x = { force = 0 } } }
+[[duty]]
+name = "fast"
+share = 0.3
+set = { "load.inner_speed" = "1500 rpm", "load.y.force" = "3 kN", "load.x.force" = 500 }
+[[duty]]
+name = "heavy"
+share = 0.2
+[duty.set.load]
+inner_speed = "300 rpm"
+y.force = "6000 N"
+"#;
+
+#[test]
+fn consistency_a_duty_of_the_scene_is_a_table_of_loads() {
+    let scratch = Scratch::new("rating-duty");
+    std::fs::write(scratch.path("scene.toml"), format!("{SCENE}{DUTY}")).unwrap();
+    std::fs::write(scratch.path("loads.csv"), LOADS).unwrap();
+    let scene = scratch.path("scene.toml");
+    let printed = |arguments: &[&str]| {
+        let output = roulement(arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (own, told) = printed(&["rating", &scene]);
+    let (of_table, _) = printed(&["rating", &scene, "--loads", &scratch.path("loads.csv")]);
+    let cells = |text: &str| {
+        text.lines().skip(1).map(|line| line.split_once(',').unwrap().1.to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(cells(&own), cells(&of_table));
+    let names: Vec<&str> = own.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
+    assert_eq!(names, ["slow", "fast", "heavy", "all"]);
+    // Which takes most, by hand.
+    let rows = table(&own);
+    let taken: Vec<f64> = rows[..3].iter().map(|row| row[2] / row[8]).collect();
+    let most = 100.0 * taken[2] / taken.iter().sum::<f64>();
+    assert!(told.contains(&format!("load heavy takes most of the life, {most:.0} %")), "{told}");
+    // Torques and losses by time.
+    for column in [10, 11] {
+        let mean: f64 = rows[..3].iter().map(|row| row[2] * row[column]).sum();
+        assert!(mean > 0.0 && (rows[3][column] / mean - 1.0).abs() < 1e-12, "{own}");
+    }
+    // The rest of the program reads over it.
+    printed(&["equilibrium", &scene]);
+}
+
+#[test]
+fn closed_form_hours_of_a_duty_take_their_part_of_the_life() {
+    let scratch = Scratch::new("rating-hours");
+    let duty = DUTY.replace("share = 0.", "hours = ");
+    std::fs::write(scratch.path("scene.toml"), format!("{SCENE}{duty}")).unwrap();
+    let output = roulement(&["rating", &scratch.path("scene.toml")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let rows = table(&String::from_utf8(output.stdout).unwrap());
+    let mut whole = 0.0;
+    for (row, hours) in rows.iter().zip([5.0, 3.0, 2.0]) {
+        assert!((row[2] - 0.1 * hours).abs() < 1e-12);
+        assert!((row[12] / (hours / row[8]) - 1.0).abs() < 1e-12, "{row:?}");
+        whole += row[12];
+    }
+    assert!((rows[3][12] / whole - 1.0).abs() < 1e-12, "{rows:?}");
+}
+
+#[test]
+fn duties_that_cannot_be_are_refused_with_the_key() {
+    let scratch = Scratch::new("rating-wrong-duty");
+    for (duty, parts) in [
+        ("", &["--loads", "[[duty]]"][..]),
+        ("[[duty]]\nname = \"a\"\n", &["duty[0].share", "hours"]),
+        ("[[duty]]\nname = \"a b\"\nshare = 1\n", &["duty[0].name", "a b"]),
+        ("[[duty]]\nname = \"a\"\nshare = 0\n", &["duty[0].share", "0"]),
+        (
+            "[[duty]]\nname = \"a\"\nshare = 1\n[[duty]]\nname = \"b\"\nhours = 1\n",
+            &["duty[1].share", "same in all"],
+        ),
+        (
+            "[[duty]]\nname = \"a\"\nshare = 1\n[[duty]]\nname = \"a\"\nshare = 1\n",
+            &["duty[1].name", "another"],
+        ),
+        ("[[duty]]\nname = \"a\"\nshare = 1\nset = { load = { y = { farce = 1 } } }\n", &["duty a", "farce"]),
+        (
+            "[[duty]]\nname = \"a\"\nshare = 1\nset = { \"load.y.force\" = \"1 kg\" }\n",
+            &["duty a", "load.y.force", "kg"],
+        ),
+    ] {
+        std::fs::write(scratch.path("scene.toml"), format!("{SCENE}{duty}")).unwrap();
+        let output = roulement(&["rating", &scratch.path("scene.toml")]);
+        let message = String::from_utf8_lossy(&output.stderr).to_string();
+        assert!(!output.status.success(), "{duty}");
+        for part in parts {
+            assert!(message.contains(part), "{message}\nshould have {part}");
+        }
+    }
+}
+
+/// The public three-stage gearbox under ten torques, of which the largest takes most of every life.
+#[test]
+fn consistency_a_gearbox_under_ten_loads() {
+    let scratch = Scratch::new("rating-gearbox");
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/gearbox/three_stage.toml"))
+            .unwrap();
+    let duty: String = (1..=10)
+        .map(|k| {
+            format!(
+                "[[duty]]\nname = \"load{k}\"\nhours = 100\n[duty.set.shaft.output]\ntorque = {}\n",
+                50.0 * f64::from(k)
+            )
+        })
+        .collect();
+    std::fs::write(scratch.path("scene.toml"), format!("{text}\n{duty}")).unwrap();
+    let output = roulement(&["rating", &scratch.path("scene.toml")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let machine: Vec<Vec<f64>> = text
+        .lines()
+        .filter(|line| line.contains("(machine)"))
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect())
+        .collect();
+    assert_eq!(machine.len(), 11, "{text}");
+    let damage: f64 = machine[..10].iter().map(|row| row[12]).sum();
+    // Heavier loads take more, and losses grow with them.
+    assert!(machine[..10].windows(2).all(|pair| pair[1][12] > pair[0][12]), "{text}");
+    assert!(machine[9][12] > 0.25 * damage, "{text}");
 }

@@ -7,7 +7,6 @@ use toml::{Table, Value};
 
 use super::mesh::SceneSpring;
 use super::{MountedScene, SystemLoad};
-use crate::catalogue::Request;
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::scene::{Scene, SceneError};
 use crate::schema::units::Acceleration;
@@ -49,7 +48,13 @@ pub struct Shared {
     pub solver: Table,
     /// Where files are.
     pub folder: PathBuf,
+    /// Where designations are looked up.
+    pub catalogue: Catalogue,
 }
+
+/// Scene of a catalogue bearing by its designation, as a text, and the mass of its outer ring \[kg]; or why there is none. Packages have none,
+/// so that their library is spared the table and its estimates.
+pub type Catalogue = fn(&str) -> Result<(String, f64), String>;
 
 impl WrittenBearing {
     /// The bearing by its stiffness, where it is one.
@@ -87,14 +92,10 @@ impl WrittenBearing {
                 (text, path.parent().unwrap_or(Path::new("")).to_path_buf(), Some(file))
             }
             (None, Some(designation)) => {
-                let request = Request { designation: Some(designation.clone()), ..Request::default() };
-                let refuse =
-                    |why| inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")));
-                let bearing = request.bearing().map_err(refuse)?;
-                let text = bearing.scene(1).map_err(refuse)?;
-                if mounting.axial == AxialSeat::Free {
-                    estimated_mass = Some(bearing.outer_ring_mass().map_err(refuse)?);
-                }
+                let (text, outer_ring_mass) = (given.catalogue)(&designation).map_err(|why| {
+                    inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")))
+                })?;
+                estimated_mass = (mounting.axial == AxialSeat::Free).then_some(outer_ring_mass);
                 (text, given.folder.clone(), None)
             }
             _ => {
@@ -149,6 +150,10 @@ fn check_changes(set: &Table) -> Result<(), SceneError> {
         (
             set.contains_key("phase").then(|| "phase".into()),
             "phases are those of the machine: [[phase]] beside the shaft",
+        ),
+        (
+            set.contains_key("duty").then(|| "duty".into()),
+            "the duty is that of the machine: [[duty]] beside the shaft",
         ),
     ];
     refused.into_iter().try_for_each(|(key, why)| match key {
@@ -230,8 +235,9 @@ fn mount(
     inner.insert("drive".into(), "pose".into());
     table.insert("inner".into(), inner.into());
     let mut load = section(table, "load");
-    // Phases, too, are those of the shaft.
+    // Phases and duty, too, are those of the shaft.
     table.remove("phase");
+    table.remove("duty");
     let of_outer = of_outer.map(|speed| Value::from(direction.sign() * speed));
     let outer_speed = load.remove("outer_speed").or(of_outer);
     let mut load = Table::new();

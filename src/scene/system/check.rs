@@ -6,7 +6,7 @@ use super::{MountedScene, NamedLoad, Written, check_housing, mesh};
 use crate::effects::gravity::GRAVITY;
 use crate::schema::numbers::Range;
 use crate::schema::{
-    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_phases,
+    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_duty, check_phases,
 };
 
 /// Checks every value against its range, and the keys against one another.
@@ -14,6 +14,7 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     let load = &written.load;
     Range::above(0.0, 1e4, "s").check("load.duration", load.duration.0)?;
     Range::closed(1e-9, load.duration.0, "s").check("load.output_interval", load.output_interval.0)?;
+    check_duty(&written.duty)?;
     check_phases(&written.phase, load.duration.0)?;
     for (schedule, axis) in written.gravity.0.iter().zip(["x", "y", "z"]) {
         let key = format!("gravity.{axis}");

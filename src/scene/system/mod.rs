@@ -13,7 +13,7 @@ mod ranges;
 use std::fmt;
 use std::path::Path;
 
-use bearing::{Shared, WrittenBearing};
+use bearing::{Catalogue, Shared, WrittenBearing};
 use mesh::{SceneMesh, SceneSpring};
 use nalgebra::Vector3;
 pub use numbers::{ShaftNumber, ShaftParameter};
@@ -21,12 +21,13 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{FrameMotion, Ranges, Scene, SceneError};
+use crate::catalogue;
 use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    AxialSeat, Components, GearSection, GivenMotion, HousingLoad, HousingSection, Matrices, MeshSection,
-    Mounting, PhaseSection, PointLoad, RotatingSection, Schedule, ShaftSection, Shafts, Solver, explain,
-    regular,
+    AxialSeat, Components, DutySection, GearSection, GivenMotion, HousingLoad, HousingSection, Matrices,
+    MeshSection, Mounting, PhaseSection, PointLoad, RotatingSection, Schedule, ShaftSection, Shafts, Solver,
+    explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -54,6 +55,8 @@ pub struct SystemScene {
     pub load: SystemLoad,
     /// Named windows of the run, of the shaft and of all its bearings.
     pub phases: Vec<PhaseSection>,
+    /// Loads over its life.
+    pub duty: Vec<DutySection>,
     /// Its text, which stands alone: every bearing with its whole scene in place of a file or a designation.
     pub source: String,
 }
@@ -184,6 +187,9 @@ struct Written {
     /// Named windows of the run, which have means and lives of their own.
     #[serde(default)]
     phase: Vec<PhaseSection>,
+    /// Loads over its life, each with its part of the time: `roulement rating` adds up what they take of it.
+    #[serde(default)]
+    duty: Vec<DutySection>,
     /// [m/s2] acceleration of gravity along the shaft's x, y, z, each constant or a table: it acts on the shaft and inside the bearings. 0 if not given.
     #[serde(default)]
     gravity: Components<Acceleration>,
@@ -218,12 +224,14 @@ impl SystemScene {
     /// See [`SceneError`].
     pub fn parse(text: &str, file: Option<&str>, folder: &Path) -> Result<Self, SceneError> {
         let placed = |error| explain::with_place(error, text, None, file);
+        let read = |text: &str, file: Option<&str>| {
+            let place = |error, spot| explain::with_place(error, text, spot, file);
+            Self::read(text, folder, catalogue::scene_of, place)
+        };
         match Scene::with_files(text, folder).map_err(placed)? {
             // Lines of the text with the tables are not those that the reader of a message has.
-            Some(text) => {
-                Self::read(&text, folder, |error, spot| explain::with_place(error, &text, spot, None))
-            }
-            None => Self::read(text, folder, |error, spot| explain::with_place(error, text, spot, file)),
+            Some(text) => read(&text, None),
+            None => read(text, file),
         }
     }
 
@@ -232,13 +240,25 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn edited(text: &str) -> Result<Self, SceneError> {
-        Self::read(text, Path::new(""), |error, _| error)
+        Self::read(text, Path::new(""), catalogue::scene_of, |error, _| error)
+    }
+
+    /// Reads the system of a package, whose text is that of [`SystemScene::source`]: its bearings have scenes and no designations.
+    ///
+    /// # Errors
+    /// See [`SceneError`].
+    pub fn of_package(text: &str, file: &str) -> Result<Self, SceneError> {
+        let no_catalogue =
+            |_: &str| Err("a package has the scenes of its bearings, and no catalogue".to_string());
+        let place = |error, spot| explain::with_place(error, text, spot, Some(file));
+        Self::read(text, Path::new(""), no_catalogue, place)
     }
 
     /// Reads a system whose schedules name no files.
     fn read(
         text: &str,
         folder: &Path,
+        catalogue: Catalogue,
         place: impl Fn(SceneError, Option<usize>) -> SceneError,
     ) -> Result<Self, SceneError> {
         check::elsewhere(text).map_err(|why| place(why, None))?;
@@ -253,6 +273,7 @@ impl SystemScene {
             bearing,
             load,
             phase: phases,
+            duty,
             gravity,
             frame,
             solver,
@@ -290,6 +311,7 @@ impl SystemScene {
             load,
             solver,
             folder: folder.to_path_buf(),
+            catalogue,
         };
         let (springs, bearing): (Vec<_>, Vec<_>) =
             bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
@@ -305,7 +327,8 @@ impl SystemScene {
             effects.cage.check_frame(frame.is_some()).map_err(placed)?;
         }
         let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity.largest() != 0.0);
-        ranges.check(&source, |text| Self::edited(text).map(drop)).map_err(placed)?;
+        let read = |text: &str| Self::read(text, Path::new(""), catalogue, |error, _| error).map(drop);
+        ranges.check(&source, read).map_err(placed)?;
         Ok(Self {
             title,
             shafts,
@@ -317,6 +340,7 @@ impl SystemScene {
             frame,
             load,
             phases,
+            duty,
             ranges,
             source,
         })
