@@ -1,4 +1,4 @@
-//! The outer race under a wrench in a package, through the C interface.
+//! The outer race under a wrench in a package, of a bearing and of a shaft, through the C interface.
 
 use nalgebra::{Matrix3, Vector3};
 use roulement::Simulation;
@@ -6,8 +6,10 @@ use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::fmi::v2::Status;
 use roulement::interface::variables::Causality;
 use roulement::scene::Scene;
+use roulement::simulation::system::{Played, System};
 
 use crate::fmi2_abi::*;
+use crate::system::scene;
 
 const STEP: f64 = 1e-4;
 
@@ -238,4 +240,121 @@ fn regression_a_held_inner_race_starts_where_the_scene_says_whatever_the_place_o
     step(c, 0);
     assert!((get(&package, c, "inner.force.y") / before - 1.0).abs() < 0.1);
     unsafe { fmi2FreeInstance(c) };
+}
+
+/// A ring under a wrench between the bearings of a shaft.
+fn rig(keys: &str) -> String {
+    let bearing =
+        |name: &str, keys: &str| format!("[[bearing]]\nname = \"{name}\"\ncatalogue = \"6205\"\n{keys}\n");
+    format!(
+        "[shaft]\nspeed = 300\nmass = 1.5\npolar_inertia = 5e-4\ntransverse_inertia = 4e-3\n{}{}{}[load]\nduration = 0.01\n\
+         output_interval = 1e-4\n[solver]\nmax_step = 1e-5\n",
+        bearing("left", "mounting = { position = -0.06, preload = { force = 300 } }"),
+        bearing("right", "mounting = { position = 0.06, direction = \"-x\", preload = { force = 300 } }"),
+        bearing(
+            "tested",
+            &format!(
+                "mounting = {{ position = 0.02 }}\n[bearing.set]\nouter = {{ drive = \"wrench\", mass = 0.4, \
+                 inertia = [2e-4, 1.2e-4, 1.2e-4] }}\n{keys}"
+            )
+        ),
+    )
+}
+
+const CONSTANT: &str = "load.outer = { x = { force = 150 }, z = { force = -1500 } }";
+
+#[test]
+fn invariant_inputs_of_an_outer_race_on_a_shaft_are_those_of_its_file() {
+    let package = Package::of_system("outer-shaft", &rig(CONSTANT));
+    let c = initialising(&package);
+    for (name, value) in
+        [("applied_force.z", -900.0), ("applied_force.y", 80.0), ("applied_moment.z", 0.4), ("speed", -6.0)]
+    {
+        set(&package, c, &format!("tested.outer.{name}"), value);
+    }
+    assert_eq!(unsafe { fmi2ExitInitializationMode(c) }, Status::Ok);
+    let file = "load = { outer = { x = { force = 150 }, y = { force = 80 }, z = { force = -900 }, rz = { moment = 0.4 } }, outer_speed = -6 }";
+    let mut native = System::new(&scene(&rig(file))).unwrap();
+    let same = |c: Component, native: &System| {
+        let ring = &native.bearings().nth(2).unwrap().1.outputs().outer;
+        for (name, value) in [
+            ("outer.position.x", ring.pose.position.x),
+            ("outer.position.z", ring.pose.position.z),
+            ("outer.velocity.z", ring.twist.velocity.z),
+            ("outer.force.z", ring.wrench.force.z),
+            ("outer.moment.y", ring.wrench.moment.y),
+            ("outer.drive_torque", ring.drive_torque),
+        ] {
+            let ours = get(&package, c, &format!("tested.{name}"));
+            assert!((ours - value).abs() <= 1e-9 * value.abs().max(1e-9), "{name}: {ours} {value}");
+        }
+        let ours = get(&package, c, "left.inner.force.z");
+        let theirs = native.bearings().next().unwrap().1.outputs().inner.wrench.force.z;
+        assert!((ours - theirs).abs() <= 1e-9 * theirs.abs(), "{ours} {theirs}");
+    };
+    same(c, &native);
+    for k in 0..10 {
+        if k == 3 {
+            set(&package, c, "tested.outer.applied_force.z", -2000.0);
+            let mut inputs: Vec<_> = native.bearings().map(|(_, bearing)| *bearing.inputs()).collect();
+            inputs[2].outer.applied.force.z = -2000.0;
+            assert!(native.set_inputs(native.inputs().clone(), inputs));
+        }
+        step(c, k);
+        native.advance_with(f64::from(k) * STEP + STEP, &Played::none(native.scene())).unwrap();
+        same(c, &native);
+    }
+    // What the ring is loaded with, the other bearings carry in the mean: one of them alone some hundred newtons more than before.
+    let ring = native.bearings().nth(2).unwrap().1.outputs();
+    assert!(ring.outer.pose.position.z < -1e-7, "{}", ring.outer.pose.position.z);
+    // Its numbers are parameters.
+    let names: Vec<&str> = package.rows.iter().map(|row| row.name.as_str()).collect();
+    assert!(names.contains(&"tested.outer.mass") && names.contains(&"tested.outer.inertia.y"));
+    unsafe { fmi2FreeInstance(c) };
+}
+
+#[test]
+fn invariant_a_wrench_on_a_shaft_that_a_table_gives_is_played_until_it_is_set_and_replayed_to_the_bit() {
+    let table = "load.outer = { x = { force = 150 }, z = { force = [[0, -1500], [\"1 ms\", -500]] } }";
+    let package = Package::of_system("outer-shaft-script", &rig(table));
+    let c = package.start();
+    for k in 0..3 {
+        step(c, k);
+        let expected = -1500.0 + 100.0 * f64::from(k + 1);
+        assert!((get(&package, c, "tested.outer.applied_force.z") - expected).abs() < 1e-6);
+    }
+    crate::system::replay(&package, c, |c| (3..5).for_each(|k| step(c, k)));
+    set(&package, c, "tested.outer.applied_force.z", -700.0);
+    step(c, 5);
+    assert_eq!(get(&package, c, "tested.outer.applied_force.z"), -700.0);
+    unsafe { fmi2FreeInstance(c) };
+}
+
+#[test]
+fn invariant_derivatives_by_a_wrench_on_a_shaft_are_differences() {
+    let package = Package::of_system("outer-shaft-derivatives", &rig(CONSTANT));
+    let run = |change: f64| {
+        let c = package.start();
+        (0..3).for_each(|k| step(c, k));
+        set(&package, c, "tested.outer.applied_force.z", -1500.0 + change);
+        step(c, 3);
+        c
+    };
+    let [c, plus, minus] = [0.0, 1.0, -1.0].map(run);
+    for name in [
+        "tested.outer.position.z",
+        "tested.inner.force.z",
+        "left.inner.force.z",
+        "tested.seat.displacement.z",
+    ] {
+        let (unknown, known) = (package.reference(name), package.reference("tested.outer.applied_force.z"));
+        let mut ours = f64::NAN;
+        let status = unsafe { fmi2GetDirectionalDerivative(c, &unknown, 1, &known, 1, &1.0, &mut ours) };
+        assert_eq!(status, Status::Ok);
+        let difference = (get(&package, plus, name) - get(&package, minus, name)) / 2.0;
+        assert!((ours / difference - 1.0).abs() < 2e-3 && ours != 0.0, "{name}: {ours:e} {difference:e}");
+    }
+    for c in [c, plus, minus] {
+        unsafe { fmi2FreeInstance(c) };
+    }
 }

@@ -13,6 +13,7 @@ mod hub;
 mod loads;
 mod mesh;
 mod motion;
+mod outer_wrench;
 mod quasi_static;
 mod reference;
 mod seats;

@@ -81,7 +81,6 @@ impl WrittenBearing {
         let (shaft, outer_shaft) = (named(&shaft).unwrap_or(0), named(&mounting.outer_shaft));
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
-        check_changes(&set).map_err(inside)?;
         let mut estimated_mass = None;
         let catalogued = catalogue.is_some();
         let (text, folder, file) = match (scene, catalogue) {
@@ -109,6 +108,8 @@ impl WrittenBearing {
         if catalogued {
             leave_balls_free(&mut table);
         }
+        let is_under_wrench = drive_of_outer(&set).or(drive_of_outer(&table)) == Some("wrench");
+        check_changes(&set, is_under_wrench).map_err(inside)?;
         merge(&mut table, set);
         if mounting.seats_outer_ring() {
             seat_outer_ring(&mut table, &mounting, estimated_mass).map_err(inside)?;
@@ -130,18 +131,28 @@ impl WrittenBearing {
     }
 }
 
+/// Drive of the outer race, where a table gives it.
+fn drive_of_outer(table: &Table) -> Option<&str> {
+    table.get("outer")?.get("drive")?.as_str()
+}
+
+/// Keys of `[load]` that are those of an outer race under a wrench.
+const OF_WRENCH: [&str; 3] = ["outer", "rotating", "gear"];
+
 /// Refuses changes that would count for nothing. A scene may have such keys: it is that of a bearing alone, too.
-fn check_changes(set: &Table) -> Result<(), SceneError> {
+fn check_changes(set: &Table, is_under_wrench: bool) -> Result<(), SceneError> {
     let keys = |section: &str| {
         let table = set.get(section).and_then(Value::as_table);
         table.into_iter().flat_map(Table::keys).cloned().collect::<Vec<_>>()
     };
-    let loads = keys("load").into_iter().find(|key| key != "outer_speed");
+    let counts = |key: &str| key == "outer_speed" || is_under_wrench && OF_WRENCH.contains(&key);
+    let loads = keys("load").into_iter().find(|key| !counts(key));
     let inner = keys("inner").into_iter().find(|key| ["drive", "mass", "inertia"].contains(&key.as_str()));
     let refused = [
         (
             loads.map(|key| format!("load.{key}")),
-            "loads and speed are those of the shaft: [[shaft.load]], [[shaft.rotating]], [[shaft.gear]], shaft.speed",
+            "loads and speed are those of the shaft: [[shaft.load]], [[shaft.rotating]], [[shaft.gear]], shaft.speed; an outer race with \
+             outer.drive = \"wrench\" has load.outer",
         ),
         (
             inner.map(|key| format!("inner.{key}")),
@@ -224,7 +235,7 @@ fn seat_outer_ring(
 }
 
 /// Makes a bearing's own scene that of a bearing whose inner race a shaft moves; with its speed [rad/s], and that of the shaft that moves the
-/// outer one, if one does.
+/// outer one, if one does. Loads on an outer race under a wrench stay.
 fn mount(
     table: &mut Table,
     given: &Shared,
@@ -240,7 +251,9 @@ fn mount(
     table.remove("duty");
     let of_outer = of_outer.map(|speed| Value::from(direction.sign() * speed));
     let outer_speed = load.remove("outer_speed").or(of_outer);
-    let mut load = Table::new();
+    let is_under_wrench = drive_of_outer(table) == Some("wrench");
+    let mut load: Table =
+        load.into_iter().filter(|(key, _)| is_under_wrench && OF_WRENCH.contains(&key.as_str())).collect();
     load.extend(outer_speed.map(|speed| ("outer_speed".to_string(), speed)));
     load.insert("duration".into(), given.load.duration.0.into());
     load.insert("output_interval".into(), given.load.output_interval.0.into());

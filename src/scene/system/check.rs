@@ -1,12 +1,14 @@
 //! Checks of the keys of a system.
 
 use super::bearing::WrittenBearing;
+use super::mesh::SceneSpring;
 use super::ranges::{BORE_OFFSET, BORE_TILT, GIVEN_DISPLACEMENT, GIVEN_ROTATION, INERTIA, MASS, POSITION};
-use super::{MountedScene, NamedLoad, Written, check_housing, mesh};
+use super::{MountedScene, NamedLoad, Scene, Written, check_housing, mesh};
 use crate::effects::gravity::GRAVITY;
 use crate::schema::numbers::Range;
 use crate::schema::{
-    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_duty, check_phases,
+    AxialSeat, Drive, Level, Mounting, Race, SceneError, ShaftSection, StiffnessSection, check_duty,
+    check_phases,
 };
 
 /// Checks every value against its range, and the keys against one another.
@@ -94,9 +96,6 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
         }
         on_one_of(shafts, bearing)?;
     }
-    for shaft in shafts {
-        held(shaft, written)?;
-    }
     for housing in &written.housing {
         check_housing::housing(housing)?;
         if !written.bearing.iter().any(|bearing| bearing.mounting.housing.as_ref() == Some(&housing.name)) {
@@ -133,7 +132,8 @@ const ELSEWHERE: [(&str, &[&str], &str); 5] = [
     (
         "load",
         &["inner_speed", "outer_speed", "outer"],
-        "is for a bearing without a shaft: a machine has shaft.speed or shaft.torque, and mounting.outer_shaft for an outer ring that turns",
+        "is for a bearing without a shaft: a machine has shaft.speed or shaft.torque, mounting.outer_shaft for an outer ring that turns, and \
+         [bearing.set] load.outer for one under a wrench",
     ),
 ];
 
@@ -222,35 +222,44 @@ fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Resul
     mesh::check_stiffness(stiffness).map_err(inside)
 }
 
-/// Does nothing of a bearing hold its shaft along the axis?
-fn slides(bearing: &WrittenBearing) -> bool {
-    match &bearing.stiffness {
-        Some(stiffness) => stiffness.axial.is_none_or(|axial| axial.0 == 0.0),
-        None => bearing.mounting.axial == AxialSeat::Free,
-    }
-}
-
-/// Something holds a shaft along its axis.
-fn held(shaft: &ShaftSection, written: &Written) -> Result<(), SceneError> {
-    let one = written.shaft.0.len() == 1;
-    let has = |name: &Option<String>| name.as_ref() == Some(&shaft.name);
-    let on = |bearing: &&WrittenBearing| one || has(&bearing.shaft) || has(&bearing.mounting.outer_shaft);
-    let mut own = written.bearing.iter().filter(on);
-    let driven = shaft.load.iter().any(|load| load.displacement.x.is_some());
-    if shaft.matrices.is_none() && !driven && own.all(slides) {
-        let why = match one {
-            true => {
-                "nothing would hold the shaft along its axis: at least one bearing needs axial = \"held\""
-                    .into()
-            }
-            false => format!(
-                "nothing would hold shaft \"{}\" along its axis: at least one bearing on it needs axial = \"held\"",
-                shaft.name
-            ),
-        };
+/// Every shaft is held along its axis.
+pub fn held(
+    shafts: &[ShaftSection],
+    bearings: &[MountedScene],
+    springs: &[SceneSpring],
+) -> Result<(), SceneError> {
+    for (index, shaft) in shafts.iter().enumerate() {
+        let on = |bearing: &&MountedScene| bearing.shaft == index || bearing.outer_shaft == Some(index);
+        let own = || bearings.iter().filter(on);
+        let by_spring = springs.iter().filter(|spring| spring.shaft == index);
+        let mut by_spring = by_spring.filter_map(|spring| spring.stiffness.axial);
+        let driven = shaft.load.iter().any(|load| load.displacement.x.is_some());
+        let held = driven
+            || own().any(|bearing| bearing.mounting.axial == AxialSeat::Held && !goes_along(&bearing.scene))
+            || by_spring.any(|axial| axial.0 != 0.0);
+        if shaft.matrices.is_some() || held {
+            continue;
+        }
+        let which = if shafts.len() == 1 { "the shaft".into() } else { format!("shaft \"{}\"", shaft.name) };
+        let on_it = if shafts.len() == 1 { "" } else { " on it" };
+        if let Some(bearing) = own().find(|bearing| goes_along(&bearing.scene)) {
+            let why = format!(
+                "\"wrench\": nothing would hold {which} along its axis, as this outer race goes along; give it load.outer.x.displacement, or \
+                 another bearing{on_it} that is held"
+            );
+            return Err(SceneError::conflict(format!("bearing \"{}\": outer.drive", bearing.name), why));
+        }
+        let why = format!(
+            "nothing would hold {which} along its axis: at least one bearing{on_it} needs axial = \"held\""
+        );
         return Err(SceneError::conflict("bearing.mounting.axial = \"free\"", why));
     }
     Ok(())
+}
+
+/// Does the outer race follow the inner one along the axis, under a wrench that does not hold it there?
+fn goes_along(scene: &Scene) -> bool {
+    scene.outer.drive == Drive::Wrench && Race::Outer.directions(scene)[0].motion.is_none()
 }
 
 /// How an outer ring sits.
@@ -465,11 +474,12 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         MASS.check("outer.mass", mass.0).map_err(inside)?;
     }
-    if scene.outer.drive == Drive::Wrench {
+    let preload = bearing.mounting.preload;
+    if scene.outer.drive == Drive::Wrench && (preload.force.is_some() || preload.displacement.is_some()) {
         return refuse(
-            "outer.drive",
-            "\"wrench\" is for a bearing without a shaft: allowed are fixed, hinge, pose, and a support; an outer ring that loads or a \
-             drive act on is a part of a hub: a [[shaft]] of its own, named by mounting.outer_shaft",
+            "bearing.mounting.preload",
+            "is not for an outer race under a wrench (outer.drive), whose axial load is load.outer.x.force: give that, or \
+             load.outer.x.displacement",
         );
     }
     Ok(())

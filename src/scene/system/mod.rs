@@ -315,10 +315,12 @@ impl SystemScene {
         };
         let (springs, bearing): (Vec<_>, Vec<_>) =
             bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
-        let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).collect();
+        let springs: Vec<_> =
+            springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).collect();
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let mut bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings, &shafts).map_err(placed)?;
+        check::held(&shafts, &bearings, &springs).map_err(placed)?;
         for mounted in &mut bearings {
             let (place, direction) = (mounted.place(&shafts), mounted.mounting.direction.sign());
             let effects = &mut mounted.scene.effects;

@@ -5,7 +5,7 @@
 //! ```
 //! In a frame that turns, Coriolis forces are in C and what depends on places in K.
 //!
-//! Coordinates are those of all structures, one after the other. Bearings are springs between their races, with the stiffness of their
+//! Coordinates are those of all structures, one after the other, then those of outer races under wrenches. Bearings are springs between their races, with the stiffness of their
 //! quasi-static equilibrium, and dampers, with their balls condensed out ([`crate::analysis::condensed`]); what supports of a bearing's own
 //! weigh and damp is left out. Dampers are those of rolling: where balls hardly roll there are none, as a contact that sticks is a spring
 //! across its normal and no damper.
@@ -18,9 +18,13 @@ use super::statics::{Statics, of_link};
 use super::{System, SystemError};
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::StructureLoad;
-use crate::model::structure::{Carrier, Structure, StructureState};
+use crate::model::bodies::{Race, RigidBody};
+use crate::model::state::BodyState;
+use crate::model::structure::{Carrier, Map, Structure, StructureState};
 use crate::numerics::given::take_out;
 use crate::numerics::modes::{Mode, modes};
+use crate::scene::Drive;
+use crate::simulation::motions::free;
 
 /// [-] of the displacements of a mode: more along the axis is an axial one; less whirl goes to and fro.
 const HALF: f64 = 0.5;
@@ -39,7 +43,7 @@ pub struct Linear {
     pub stiffness: DMatrix<f64>,
 }
 
-/// How the shaft goes in a mode.
+/// How shafts, and rings under wrenches, go in a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Whirl {
     /// Round its axis as it turns itself.
@@ -77,6 +81,26 @@ pub struct ShaftMode {
     pub place: String,
 }
 
+/// An outer race under a wrench: a body beside the structures.
+pub(super) struct Ring<'a> {
+    bearing: usize,
+    moved: &'a RigidBody,
+    state: &'a BodyState,
+    /// First of its coordinates among all.
+    first: usize,
+    /// Its free directions, one for each coordinate.
+    free: Vec<usize>,
+}
+
+impl Ring<'_> {
+    /// Its motion by so many coordinates of all.
+    fn map(&self, size: usize) -> Map {
+        let mut map = Map::zeros(size);
+        self.free.iter().enumerate().for_each(|(k, row)| map[(*row, self.first + k)] = 1.0);
+        map
+    }
+}
+
 impl System {
     /// Linear equations of motion about the present state.
     ///
@@ -101,7 +125,9 @@ impl System {
             let rolls = bearing.outputs().rolling_speed.abs() > ROLLS;
             if rolls && !supported { of() } else { Matrix6::zeros() }
         };
-        let dampers: Vec<_> = self.bearings.iter().map(condensed).collect();
+        let mut dampers: Vec<_> = self.bearings.iter().map(condensed).collect();
+        let rings = self.rings();
+        let of_rings: Vec<_> = rings.iter().map(|ring| std::mem::take(&mut dampers[ring.bearing])).collect();
         let mut statics = Statics {
             scene: &self.structures.scene,
             time: self.time(),
@@ -114,7 +140,7 @@ impl System {
             bearings: &mut bearings,
             friction: &mut vec![0.0; dampers.len()],
         };
-        let mut stiffness = statics.stiffness(&self.structures.states)?;
+        let (mut stiffness, of_bearings) = statics.stiffness(&self.structures.states)?;
         let mut damping = statics.spread(&dampers);
         for (link, state) in self.structures.links.iter().zip(&self.structures.link_states) {
             let map = of_link(link, &statics.first());
@@ -134,11 +160,53 @@ impl System {
                 own += stiff;
             }
         }
+        let relative: Vec<Map> =
+            rings.iter().map(|ring| statics.relative(ring.bearing, &statics.first())).collect();
+        for (ring, relative) in rings.iter().zip(&relative) {
+            // At rest it follows the structures; as a body it is no part of them.
+            stiffness -= relative.tr_mul(&(of_bearings[ring.bearing] * relative));
+        }
+        let size = rings.last().map_or(mass.nrows(), |ring| ring.first + ring.free.len());
+        let [mut mass, mut damping, mut stiffness] =
+            [mass, damping, stiffness].map(|matrix| matrix.resize(size, size, 0.0));
+        for ((ring, damper), relative) in rings.iter().zip(&of_rings).zip(relative) {
+            let bearing = &self.bearings[ring.bearing];
+            let across = relative.resize_horizontally(size, 0.0) - ring.map(size);
+            let between = Condensed::new(&bearing.model, &bearing.state, &bearing.conditions()).stiffness;
+            stiffness += across.tr_mul(&(between * &across));
+            damping += across.tr_mul(&(damper * &across));
+            let own = bearing.mover(ring.moved, ring.state);
+            let at = ((ring.first, ring.first), (ring.free.len(), ring.free.len()));
+            for (whole, own) in
+                [(&mut mass, own.mass), (&mut damping, own.damping), (&mut stiffness, own.stiffness)]
+            {
+                let mut part = whole.view_mut(at.0, at.1);
+                part += own;
+            }
+        }
         // What is given does not swing; inertia does not couple it with what does.
         for matrix in [&mut damping, &mut stiffness] {
             take_out(matrix, self.held(), 0.0);
         }
         Ok(Linear { mass, damping, stiffness })
+    }
+
+    /// Outer races under wrenches, where forces move them.
+    pub(super) fn rings(&self) -> Vec<Ring<'_>> {
+        let mut first = self.structures.carriers.iter().map(|carrier| carrier.structure.size()).sum();
+        let all = self.bearings.iter().enumerate();
+        let under_wrench = all.filter(|(_, bearing)| bearing.scene.outer.drive == Drive::Wrench);
+        let moved = under_wrench.flat_map(|(index, bearing)| {
+            let bodies = bearing.moving_bodies().filter(|(body, ..)| *body == Race::Outer.into());
+            bodies.map(move |(_, moved, state)| (index, moved, state))
+        });
+        let ring = |(bearing, moved, state)| {
+            let free = free(moved);
+            let ring = Ring { bearing, moved, state, first, free };
+            first += ring.free.len();
+            ring
+        };
+        moved.map(ring).collect()
     }
 
     /// Stiffness and damping of a structure in a state by a frame of the machine that turns now.
@@ -169,11 +237,12 @@ impl System {
     pub fn modes(&self) -> Result<Option<Vec<ShaftMode>>, SystemError> {
         let Linear { mass, damping, stiffness } = self.linear()?;
         let found = modes(&mass, &damping, &stiffness);
-        Ok(found.map(|modes| modes.iter().map(|mode| self.describe(mode)).collect()))
+        let rings = self.rings();
+        Ok(found.map(|modes| modes.iter().map(|mode| self.describe(mode, &rings)).collect()))
     }
 
-    /// Moving parts of a mode, in words.
-    pub(super) fn describe(&self, mode: &Mode) -> ShaftMode {
+    /// Moving parts of a mode of the structures and of outer races under wrenches, in words.
+    pub(super) fn describe(&self, mode: &Mode, rings: &[Ring<'_>]) -> ShaftMode {
         // Displacements at every station of every structure.
         let mut first = 0;
         let mut moved: Vec<(usize, usize, [Complex<f64>; 3])> = vec![];
@@ -188,16 +257,28 @@ impl System {
                 moved.push((index, station, [along(0), along(1), along(2)]));
             }
         }
+        let count = self.structures.carriers.len();
+        for (index, ring) in rings.iter().enumerate() {
+            let along = |axis: usize| {
+                let at = ring.free.iter().position(|own| *own == axis);
+                at.map_or(Complex::from(0.0), |at| mode.shape[ring.first + at])
+            };
+            moved.push((count + index, 0, [along(0), along(1), along(2)]));
+        }
         let size = |d: &[Complex<f64>; 3]| d.iter().map(Complex::norm_sqr).sum::<f64>();
         let shafts = self.structures.scene.shafts.len();
-        let on_shafts = || moved.iter().filter(|(structure, ..)| *structure < shafts);
-        let all: f64 = on_shafts().map(|(.., d)| size(d)).sum();
-        let along: f64 = on_shafts().map(|(.., d)| d[0].norm_sqr()).sum();
-        // From y to z is forwards for a shaft that turns about +x.
-        let turn = |(shaft, _, d): &(usize, usize, [Complex<f64>; 3])| {
-            -2.0 * (d[1].conj() * d[2]).im * self.structures.states[*shaft].spin.speed.signum()
+        let going = || moved.iter().filter(|(part, ..)| *part < shafts || *part >= count);
+        let all: f64 = going().map(|(.., d)| size(d)).sum();
+        let along: f64 = going().map(|(.., d)| d[0].norm_sqr()).sum();
+        // From y to z is forwards on a shaft that turns about +x.
+        let turn = |(part, _, d): &(usize, usize, [Complex<f64>; 3])| {
+            let spin = match part.checked_sub(count) {
+                Some(ring) => self.bearings[rings[ring].bearing].state.race(Race::Inner).rate.x,
+                None => self.structures.states[*part].spin.speed,
+            };
+            -2.0 * (d[1].conj() * d[2]).im * spin.signum()
         };
-        let whirl = on_shafts().map(turn).sum::<f64>() / (all - along);
+        let whirl = going().map(turn).sum::<f64>() / (all - along);
         let whirl = match whirl {
             _ if along > HALF * all => Whirl::Axial,
             whirl if whirl > HALF => Whirl::Forward,
@@ -205,8 +286,17 @@ impl System {
             _ => Whirl::Planar,
         };
         let most = moved.iter().max_by(|a, b| size(&a.2).total_cmp(&size(&b.2)));
-        let place = most.map_or(String::new(), |(structure, station, _)| self.place(*structure, *station));
+        let place =
+            most.map_or(String::new(), |(structure, station, _)| match structure.checked_sub(count) {
+                Some(ring) => self.name_of_ring(rings[ring].bearing),
+                None => self.place(*structure, *station),
+            });
         ShaftMode { frequency: mode.frequency(), damping: mode.damping(), whirl, place }
+    }
+
+    /// Name of the outer ring of a bearing.
+    fn name_of_ring(&self, bearing: usize) -> String {
+        format!("the outer ring of {}", self.structures.scene.bearings[bearing].name)
     }
 
     /// Name of a station of the shaft or a housing.
@@ -236,7 +326,7 @@ impl System {
                     true => scene.bearings_in(index).nth(station),
                     false => scene.bearings_in_ground().nth(station),
                 };
-                bearing.map(|bearing| format!("the outer ring of {}", scene.bearings[bearing].name))
+                bearing.map(|bearing| self.name_of_ring(bearing))
             }
             // Bores in the ground that do not move are no places of a mode.
             Some(index) if index >= scene.housings.len() => None,

@@ -75,7 +75,7 @@ impl System {
                 return named(&moving);
             }
             let shape = motion.shape.rows(0, of_carriers).into_owned();
-            let mode = self.describe(&Mode { eigenvalue: motion.value, shape });
+            let mode = self.describe(&Mode { eigenvalue: motion.value, shape }, &[]);
             format!("{}, {}", mode.place, mode.whirl.name())
         };
         // Places of one race against the other, by all coordinates.

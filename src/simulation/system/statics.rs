@@ -69,6 +69,8 @@ fn place(bearing: &mut Simulation, race: Race, seat: &SeatMotion) {
 struct Trial {
     residual: DVector<f64>,
     stiffness: DMatrix<f64>,
+    /// Stiffness of each bearing.
+    of_bearings: Vec<Matrix6<f64>>,
     /// \[N] largest force at work.
     force: f64,
 }
@@ -275,6 +277,7 @@ impl Statics<'_> {
         let size = first[first.len() - 1];
         let mut residual = DVector::zeros(size);
         let mut stiffness = DMatrix::zeros(size, size);
+        let mut of_bearings = vec![];
         let mut force = 0.0f64;
         let loads = self.carriers.iter().zip(self.loads).zip(self.scales);
         for (((Carrier { structure, .. }, load), scales), (from, state)) in
@@ -330,6 +333,7 @@ impl Statics<'_> {
             }
             let relative = self.relative(index, &first);
             stiffness += relative.tr_mul(&(whole * &relative));
+            of_bearings.push(whole);
         }
         for (link, flank) in self.links.iter().zip(&self.flanks) {
             let [displacement, rate] = link.motion(|structure| &states[structure]);
@@ -346,12 +350,12 @@ impl Statics<'_> {
         for given in self.given() {
             residual[given] = 0.0;
         }
-        Ok(Trial { residual, stiffness, force })
+        Ok(Trial { residual, stiffness, of_bearings, force })
     }
 
     /// Motion of a bearing's inner race against its outer one, in the bearing's frame, by all coordinates; with the first one of each
     /// structure, and the end.
-    fn relative(&self, bearing: usize, first: &[usize]) -> Map {
+    pub fn relative(&self, bearing: usize, first: &[usize]) -> Map {
         let size = first[first.len() - 1];
         let joints = self.joints.iter().filter(|joint| joint.bearing == bearing);
         joints.fold(Map::zeros(size), |relative, Joint { race, structure, seat, .. }| {
@@ -360,9 +364,12 @@ impl Statics<'_> {
         })
     }
 
-    /// Stiffness of all together about where the structures are.
-    pub fn stiffness(&mut self, states: &[StructureState]) -> Result<DMatrix<f64>, SystemError> {
-        self.evaluate(states).map(|trial| trial.stiffness)
+    /// Stiffness of all together about where the structures are, and that of each bearing by motion of its inner race against the outer one.
+    pub fn stiffness(
+        &mut self,
+        states: &[StructureState],
+    ) -> Result<(DMatrix<f64>, Vec<Matrix6<f64>>), SystemError> {
+        self.evaluate(states).map(|trial| (trial.stiffness, trial.of_bearings))
     }
 
     /// Matrix of all coordinates from one of each bearing, of forces on its inner race by motion of that against the outer one.
