@@ -1,4 +1,5 @@
-"""Coupling of a bearing in pose drive to a rigid shaft: the recipes of docs/coupling.md, in Python alone.
+"""Coupling of a bearing in pose drive to a rigid shaft, and of a shaft's package to the housing of its bearings: the recipes of
+docs/coupling.md, in Python alone.
 
 Places, velocities and wrenches have the five components x, y, z, about y, about z. A bearing is anything that has
 `wrench()`, `place()` and `step(step, place, velocity)`: `Bearing` is one on a `Simulation`, `FmuBearing` on a package in FMPy.
@@ -16,9 +17,15 @@ import shutil
 
 import numpy as np
 
-PLACE = [f"inner.position.{axis}" for axis in "xyz"] + [f"inner.rotation.{axis}" for axis in "yz"]
-VELOCITY = [f"inner.velocity.{axis}" for axis in "xyz"] + [f"inner.rotation_rate.{axis}" for axis in "yz"]
-WRENCH = ["inner.force.x", "inner.force.y", "inner.force.z", "inner.moment.y", "inner.moment.z"]
+
+
+def _variables(race):
+    """Names of place, velocity and wrench of a race."""
+    five = lambda along, about: [f"{race}.{along}.{axis}" for axis in "xyz"] + [f"{race}.{about}.{axis}" for axis in "yz"]
+    return five("position", "rotation"), five("velocity", "rotation_rate"), five("force", "moment")
+
+
+PLACE, VELOCITY, WRENCH = _variables("inner")
 
 
 def rigid(mass, transverse):
@@ -78,17 +85,18 @@ class Bearing:
 
 class FmuBearing:
     """The same on an instance of a package in FMPy (`fmpy.fmi2.FMU2Slave`) after its initialization; `references` are value
-    references by name. Needs FMPy."""
+    references by name. `race` is one in pose drive: of a shaft's package such as `left.outer`. Needs FMPy."""
 
-    def __init__(self, fmu, references, time=0.0):
+    def __init__(self, fmu, references, time=0.0, race="inner"):
         self.fmu, self.references, self.time = fmu, references, time
-        self._inputs = [references[name] for name in PLACE + VELOCITY]
-        self._outputs = [references[name] for name in WRENCH]
+        place, velocity, wrench = _variables(race)
+        self._inputs = [references[name] for name in place + velocity]
+        self._outputs = [references[name] for name in wrench]
         self._folder = None
 
     @classmethod
-    def load(cls, package):
-        """Opens a package by its path, and starts it at time 0. `close` frees it."""
+    def load(cls, package, **options):
+        """Opens a package by its path, and starts it at time 0; options are those of the class. `close` frees it."""
         from fmpy import extract, read_model_description
         from fmpy.fmi2 import FMU2Slave
 
@@ -96,17 +104,22 @@ class FmuBearing:
         identifier = description.coSimulation.modelIdentifier
         fmu = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName="bearing")
         fmu.instantiate()
-        bearing = cls(fmu, {variable.name: variable.valueReference for variable in description.modelVariables})
+        cls._start_at_0(fmu)
+        references = {variable.name: variable.valueReference for variable in description.modelVariables}
+        bearing = cls(fmu, references, **options)
         bearing._folder = folder
-        bearing.restart()
         return bearing
+
+    @staticmethod
+    def _start_at_0(fmu):
+        fmu.setupExperiment(startTime=0.0)
+        fmu.enterInitializationMode()
+        fmu.exitInitializationMode()
 
     def restart(self):
         """Back to time 0, where the bearing carries what its scene loads it with."""
         self.fmu.reset()
-        self.fmu.setupExperiment(startTime=0.0)
-        self.fmu.enterInitializationMode()
-        self.fmu.exitInitializationMode()
+        self._start_at_0(self.fmu)
         self.time = 0.0
 
     def close(self):
@@ -153,6 +166,61 @@ class FmuBearing:
         return np.array(columns).T
 
 
+def _seen(position, direction):
+    """Motion of a bearing (5 x 5), in its axes, by that of a rigid body with its origin at another point of the same axis."""
+    if direction not in (1, -1):
+        raise ValueError(f"direction = {direction}: has to be 1 or -1")
+    seen = np.diag([direction, direction, 1.0, direction, 1.0])
+    seen[1, 4], seen[2, 3] = direction * position, -position
+    return seen
+
+
+class FmuHousing(FmuBearing):
+    """Outer races of a shaft's package that sit in one rigid body, a housing outside: seen as one race about the origin of that body. `seats` are the
+    name of each bearing, its position along the shaft from there [m], and its direction, as of `Bearings`. Their races are in pose drive
+    (`set = { outer = { drive = "pose" } }`). Places are those from the start. Needs FMPy."""
+
+    def __init__(self, fmu, references, seats, time=0.0):
+        self.fmu, self.references, self.time, self._folder = fmu, references, time, None
+        races = [_variables(f"{name}.outer") for name, _, _ in seats]
+        self._inputs = [references[name] for place, velocity, _ in races for name in place + velocity]
+        self._outputs = [references[name] for _, _, wrench in races for name in wrench]
+        self._seen = [_seen(position, direction) for _, position, direction in seats]
+        self._start = [self.fmu.getReal(self._inputs[10 * k : 10 * k + 5]) for k in range(len(seats))]
+
+    def _of_races(self, place, velocity):
+        """Values of all inputs by place and velocity of the body."""
+        return np.concatenate([[*(seen @ place), *(seen @ velocity)] for seen in self._seen])
+
+    def place(self):
+        """Place of the body from the start [m, rad]: at the start, which is when it is asked for, 0."""
+        return np.zeros(5)
+
+    def wrench(self):
+        """What all bearings exert on the body, about its origin [N, N m]."""
+        return self._on_body(np.array(self.fmu.getReal(self._outputs)))
+
+    def _on_body(self, on_races):
+        return sum(seen.T @ one for seen, one in zip(self._seen, np.split(on_races, len(self._seen))))
+
+    def step(self, step, place, velocity):
+        """Wrench after a step [s] that ends in a place and velocity of the body."""
+        start = np.concatenate([[*place, *[0.0] * 5] for place in self._start])
+        self.fmu.setReal(self._inputs, list(start + self._of_races(place - velocity * step, velocity)))
+        self.fmu.doStep(self.time, step)
+        self.time += step
+        return self.wrench()
+
+    def derivative(self, step, place_gain, velocity_gain):
+        """As of `Bearing`: five derivatives of the package, each by a motion of all races together."""
+        columns = []
+        for direction in np.eye(5):
+            change = self._of_races(direction * (place_gain - velocity_gain * step), direction * velocity_gain)
+            found = self.fmu.getDirectionalDerivative(self._outputs, self._inputs, list(change))
+            columns.append(self._on_body(np.array(found)))
+        return np.array(columns).T
+
+
 class Bearings:
     """Several bearings on a rigid shaft, seen as one about the shaft's origin: pairs (or more) of `Bearing` or `FmuBearing`, position along the
     shaft [m], and direction: 1 where the bearing's x axis is the shaft's, -1 where it points the other way (half a turn about z;
@@ -161,11 +229,7 @@ class Bearings:
     def __init__(self, *mounted):
         self.parts = []
         for bearing, position, direction in mounted:
-            if direction not in (1, -1):
-                raise ValueError(f"direction = {direction}: has to be 1 or -1")
-            seen = np.diag([direction, direction, 1.0, direction, 1.0])
-            seen[1, 4], seen[2, 3] = direction * position, -position
-            self.parts.append((bearing, bearing.place(), seen))
+            self.parts.append((bearing, bearing.place(), _seen(position, direction)))
 
     def place(self):
         """Place of the shaft from the start [m, rad]: at the start, which is when it is asked for, 0."""
@@ -194,7 +258,7 @@ class Bearings:
 
 
 class Shaft:
-    """A rigid shaft on a bearing, without a scheme (`step`) yet: `inertia` (5 x 5), `force(time)` the external wrench on it, `gyroscopic` (5 x 5, with the sign
+    """A rigid shaft on a bearing, or another rigid body on what has the methods of one, without a scheme (`step`) yet: `inertia` (5 x 5), `force(time)` the external wrench on it, `gyroscopic` (5 x 5, with the sign
     of `gyroscopic()`), and a `velocity` at the start."""
 
     def __init__(self, bearing, inertia, force, gyroscopic=None, velocity=None, time=0.0):
