@@ -8,9 +8,15 @@ mod cost_reference;
 mod effect_verdicts;
 mod error;
 mod error_bars;
+#[path = "../../../tests/shaft/common.rs"]
+#[allow(dead_code)]
+mod gears;
+mod hard_cases;
 mod law_comparison;
 #[path = "../../../tests/common/random.rs"]
 mod random;
 mod random_machines;
 mod random_scenes;
 mod regret;
+#[path = "../../../tests/common/tables.rs"]
+mod tables;
