@@ -240,7 +240,12 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn edited(text: &str) -> Result<Self, SceneError> {
-        Self::read(text, Path::new(""), catalogue::scene_of, |error, _| error)
+        Self::alone(text, catalogue::scene_of)
+    }
+
+    /// The same, with the catalogue that its bearings are looked up in.
+    fn alone(text: &str, catalogue: Catalogue) -> Result<Self, SceneError> {
+        Self::read(text, Path::new(""), catalogue, |error, _| error)
     }
 
     /// Reads the system of a package, whose text is that of [`SystemScene::source`]: its bearings have scenes and no designations.
@@ -329,8 +334,7 @@ impl SystemScene {
             effects.cage.check_frame(frame.is_some()).map_err(placed)?;
         }
         let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity.largest() != 0.0);
-        let read = |text: &str| Self::read(text, Path::new(""), catalogue, |error, _| error).map(drop);
-        ranges.check(&source, read).map_err(placed)?;
+        ranges.check(&source, |text| Self::alone(text, catalogue).map(drop)).map_err(placed)?;
         Ok(Self {
             title,
             shafts,
