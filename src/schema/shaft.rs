@@ -1,5 +1,6 @@
 //! The sections of a system: a shaft, what is on it, and how its bearings are mounted.
 
+use nalgebra::Vector3;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -262,6 +263,13 @@ impl Mounting {
     /// Does it say how the outer ring sits, in a housing, on a shaft or in the ground?
     pub fn seats_outer_ring(&self) -> bool {
         self.housing.is_some() || self.outer_shaft.is_some() || self.has_bore()
+    }
+
+    /// \[m, rad] place across the axis and tilt of the bore that its outer ring sits in, in the axes of the shaft.
+    pub fn bore(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let [[y, z], [ry, rz]] = [self.offset.values(), self.misalignment.values()]
+            .map(|values| values.map(|(_, value)| value.unwrap_or(0.0)));
+        (Vector3::new(0.0, y, z), Vector3::new(0.0, ry, rz))
     }
 
     /// Does it say that the ring slides in its bore, or that the bore is tilted or lies off?

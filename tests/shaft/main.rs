@@ -14,6 +14,7 @@ mod loads;
 mod mesh;
 mod motion;
 mod outer_wrench;
+mod planets;
 mod quasi_static;
 mod reference;
 mod seats;

@@ -112,7 +112,7 @@ fn tangents_of_links_are_differences_of_their_forces_and_forces_those_of_a_poten
     };
     let wave = |times, amplitude| Variation(vec![Term::Wave { times, amplitude, phase: 0.3 }]);
     let varying = ToothMesh {
-        varying: Some(Varying { stiffness: wave(23.0, 0.2), error: wave(46.0, 3e-6) }),
+        varying: Some(Varying { turned: 0.0, stiffness: wave(23.0, 0.2), error: wave(46.0, 3e-6) }),
         ..mesh.clone()
     };
     let rubbing = ToothMesh { friction: Some(ToothFriction { arm: 0.004, slow: 0.5 }), ..varying.clone() };
@@ -120,6 +120,7 @@ fn tangents_of_links_are_differences_of_their_forces_and_forces_those_of_a_poten
         stiffness: [3e8, 1e8, 1e3],
         damping: [200.0, 100.0, 0.2],
         gap: 5e-6,
+        rest: Vector6::zeros(),
         axial: AxialSupport::Along,
     };
     for law in [Law::Mesh(mesh), Law::Mesh(varying), Law::Mesh(rubbing), Law::Spring(bearing)] {

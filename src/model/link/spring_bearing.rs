@@ -27,12 +27,15 @@ pub struct SpringBearing {
     pub gap: f64,
     /// Which way it holds the shaft.
     pub axial: AxialSupport,
+    /// \[m, rad] where the shaft is while it does nothing.
+    pub rest: Vector6<f64>,
 }
 
 impl SpringBearing {
     /// Force and moment on the shaft.
     pub fn force(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>) -> LinkForce {
         let mut on = LinkForce::none();
+        let displacement = &(displacement - self.rest);
         self.add_radial(displacement, rate, &mut on);
         let ways: &[f64] = match self.axial {
             AxialSupport::Both => &[0.0],

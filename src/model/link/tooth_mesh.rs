@@ -1,7 +1,7 @@
 //! Teeth of two gears in mesh: normal forces along the lines of action in their planes of action.
 //!
 //! ```text
-//! p   = z_2/(z_1 + z_2) r_x                         turn of the first gear against the line of centres, r the relative rotation
+//! p   = p_0 + z_2/(z_1 + z_2) r_x                   turn of the first gear against the line of centres, r the relative rotation
 //! x_f = -n_f . (u_1 - u_2) - j/2 +- e(p)            overlap on flank f, u displacements at the pitch point, j the normal backlash
 //! V   = sum_f k (1 + v(p)) S(x_f)                   S the integral of s, one_sided
 //! F_f = k (1 + v(p)) s(x_f) + c s'(x_f) x_f'
@@ -22,6 +22,8 @@ use super::variation::Variation;
 /// What varies with the turn of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Varying {
+    /// \[rad] turn of the first gear against the line of centres at the start.
+    pub turned: f64,
     /// [-] of the stiffness: v.
     pub stiffness: Variation,
     /// \[m] transmission error along the normal, e: how far the second gear is pushed on, where the first drives as it turns about +x.
@@ -78,7 +80,7 @@ impl ToothMesh {
         let Some(varying) = varying else { return [[1.0, 0.0, 0.0], [0.0; 3]] };
         let by_turn = [1.0, self.turn, self.turn * self.turn];
         let at = |of: &Variation| {
-            let own = of.at(self.turn * rotation);
+            let own = of.at(varying.turned + self.turn * rotation);
             [0, 1, 2].map(|k| own[k] * by_turn[k])
         };
         let [value, slope, bend] = at(&varying.stiffness);

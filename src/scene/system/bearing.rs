@@ -64,6 +64,7 @@ impl WrittenBearing {
             name,
             shaft: shafts.iter().position(|own| shaft.as_ref() == Some(&own.name)).unwrap_or(0),
             position: mounting.position.0,
+            bore: mounting.bore(),
             housing: mounting.housing.and_then(|wanted| housings.iter().position(|own| own.name == wanted)),
             stiffness: stiffness?,
         })

@@ -207,16 +207,18 @@ fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Resul
     let inside =
         |source| SceneError::At { place: format!("bearing \"{}\"", bearing.name), source: Box::new(source) };
     let mounting = &bearing.mounting;
-    let own = Mounting { housing: None, ..mounting.clone() };
     let preload = mounting.preload.force.is_some() || mounting.preload.displacement.is_some();
     let given = [
         ("bearing.scene", bearing.scene.is_some()),
         ("bearing.catalogue", bearing.catalogue.is_some()),
         ("bearing.set", !bearing.set.is_empty()),
-        ("bearing.mounting", own.seats_outer_ring() || preload),
+        (
+            "bearing.mounting",
+            mounting.outer_shaft.is_some() || mounting.axial == AxialSeat::Free || preload,
+        ),
     ];
     if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
-        let why = "is for a bearing that is simulated; of one by its stiffness mounting has position and housing alone";
+        let why = "is for a bearing that is simulated; of one by its stiffness mounting has position, housing, offset and misalignment alone";
         return Err(inside(SceneError::conflict(key, why)));
     }
     mesh::check_stiffness(stiffness).map_err(inside)

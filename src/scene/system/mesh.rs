@@ -42,6 +42,8 @@ pub struct SceneMesh {
     pub section: MeshSection,
     /// The shafts of its gears, by their indices.
     pub shafts: [usize; 2],
+    /// \[rad] how far the first gear is turned against the line of centres at the start: as a planet needs it that stands elsewhere than the first one.
+    pub turned: f64,
 }
 
 /// A bearing by its stiffness.
@@ -55,6 +57,8 @@ pub struct SceneSpring {
     pub position: f64,
     /// Index of the housing that it sits in; none in the ground.
     pub housing: Option<usize>,
+    /// \[m, rad] how far its bore lies beside the axis of the shaft, and the tilt of that.
+    pub bore: (Vector3<f64>, Vector3<f64>),
     /// Its keys.
     pub stiffness: StiffnessSection,
 }
@@ -89,6 +93,7 @@ impl SceneMesh {
         let of = &self.section;
         let varies = !of.stiffness_variation.is_empty() || !of.transmission_error.is_empty();
         varies.then(|| Varying {
+            turned: self.turned,
             stiffness: variation(&of.stiffness_variation, teeth(of)),
             error: variation(&of.transmission_error, teeth(of)),
         })
@@ -275,7 +280,7 @@ fn check(section: MeshSection, shafts: &[ShaftSection]) -> Result<SceneMesh, Sce
             format!("the contact ratio is {:.3}: the teeth do not reach each other", pair.contact_ratio());
         return Err(SceneError::conflict("mesh.gears", why));
     }
-    Ok(SceneMesh { section, shafts: of })
+    Ok(SceneMesh { section, shafts: of, turned: 0.0 })
 }
 
 /// Checks the keys of a bearing by its stiffness.

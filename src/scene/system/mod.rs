@@ -8,6 +8,7 @@ mod check;
 mod check_housing;
 pub mod mesh;
 mod numbers;
+mod planets;
 mod ranges;
 
 use std::fmt;
@@ -84,9 +85,7 @@ impl MountedScene {
 
     /// \[m, rad] place across the axis and tilt of the bore that its outer ring sits in, in the axes of the shaft.
     pub fn bore(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let [[y, z], [ry, rz]] = [self.mounting.offset.values(), self.mounting.misalignment.values()]
-            .map(|values| values.map(|(_, value)| value.unwrap_or(0.0)));
-        (Vector3::new(0.0, y, z), Vector3::new(0.0, ry, rz))
+        self.mounting.bore()
     }
 
     /// \[kg] mass of its outer ring, if that slides along the bore.
@@ -303,8 +302,9 @@ impl SystemScene {
             of_housings.push(read);
         }
         let meshes = mesh.into_iter().map(|mesh| mesh::read(mesh, &shafts));
-        let meshes = meshes.collect::<Result<Vec<_>, _>>().map_err(placed)?;
+        let mut meshes = meshes.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         mesh::check_trains(&shafts, &meshes).map_err(placed)?;
+        planets::place(&shafts, &mut meshes).map_err(placed)?;
         let speed = |train: mesh::InTrain| {
             train.ratio * shafts[train.root].speed.as_ref().map_or(0.0, |speed| speed.at(0.0))
         };

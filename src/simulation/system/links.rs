@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::model::link::spring_bearing::{AxialSupport, SpringBearing};
 use crate::model::link::tooth_mesh::ToothMesh;
 use crate::model::link::{Law, Link, LinkEnd};
+use crate::model::state::stack;
 use crate::model::structure::Carrier;
 use crate::scene::system::SystemScene;
 use crate::schema::AxialTaken;
@@ -93,6 +94,7 @@ pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
                 AxialTaken::Along => AxialSupport::Along,
                 AxialTaken::Against => AxialSupport::Against,
             },
+            rest: stack(&spring.bore.0, &spring.bore.1),
         };
         links.push(Link { ends, law: Law::Spring(law) });
     }

@@ -33,6 +33,8 @@ const VANISHED: f64 = 0.01;
 const FAR: f64 = 0.01;
 /// \[N] normal force below which teeth are not pressed together.
 const NO_FORCE: f64 = 1e-9;
+/// [-] moment on both races together over the sizes of those on each, beyond which balls speed up or slow down.
+const UNSTEADY: f64 = 0.5;
 /// Most steps.
 const MAX_ITERATIONS: u32 = 400;
 
@@ -438,10 +440,17 @@ impl Statics<'_> {
         Ok(())
     }
 
-    /// Takes the friction torques of bearings that were started.
+    /// Takes the friction torques of bearings that were started. Balls for which no balance was found, as the least loaded ones may have none, are sped up or
+    /// braked by both races: what these feel in the first moment is no torque of the bearing.
     pub fn see_friction(&mut self, started: &[usize]) {
         for &index in started {
-            self.friction[index] = self.bearings[index].outputs().outer.wrench.moment.x;
+            let outputs = self.bearings[index].outputs();
+            let [inner, outer] = [&outputs.inner, &outputs.outer];
+            let arm = inner.pose.position - outer.pose.position;
+            let [on_inner, on_outer] =
+                [(inner.wrench.moment + arm.cross(&inner.wrench.force)).x, outer.wrench.moment.x];
+            let steady = (on_inner + on_outer).abs() <= UNSTEADY * (on_inner.abs() + on_outer.abs());
+            self.friction[index] = if steady { on_outer } else { 0.0 };
         }
     }
 
