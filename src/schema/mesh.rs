@@ -1,7 +1,8 @@
-//! The section of two gears in mesh, `[[mesh]]`, and of a bearing by its stiffness, `[bearing.stiffness]`.
+//! The section of two gears in mesh, `[[mesh]]`, of a bearing by its stiffness, `[bearing.stiffness]`, and of a coupling, `[[coupling]]`.
 
 use serde::Deserialize;
 
+use super::stiffness::Stiffness;
 use super::units::*;
 
 /// Two gears in mesh, each on a shaft of its own.
@@ -87,19 +88,40 @@ pub struct MeshGear {
     pub tip_diameter: Option<Length>,
 }
 
-/// A bearing that is not simulated: springs and dampers between the shaft and what its outer ring sits in.
+/// A stiffness along or across an axis, or a table of its force.
+pub type WayStiffness = Stiffness<TranslationalStiffness, Length, Force>;
+
+/// A stiffness of a tilt or a twist, or a table of its moment.
+pub type TurnStiffness = Stiffness<RotationalStiffness, Angle, Moment>;
+
+/// Springs and dampers between two shafts on one axis: a coupling, a spline, a flexible disc.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub struct CouplingSection {
+    /// Its name: letters, digits, _ and -.
+    pub name: String,
+    /// Names of both shafts, which are on one axis.
+    pub shafts: [String; 2],
+    /// \[m] position along the first of them.
+    pub position: Length,
+    /// Its springs and dampers: keys of `bearing.stiffness` but for `gap` and `axial_way`, each none if not given, and `torsion`.
+    pub stiffness: StiffnessSection,
+}
+
+/// A bearing that is not simulated: springs and dampers between the shaft and what its outer ring sits in.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct StiffnessSection {
-    /// [N/m] stiffness across the axis.
-    pub radial: TranslationalStiffness,
-    /// [N/m] stiffness along it; none if not given.
-    pub axial: Option<TranslationalStiffness>,
+    /// [N/m] stiffness across the axis, or a table of displacement and force, `[[0, 0], ["5 um", "1 kN"], ...]`, the same in all directions.
+    pub radial: Option<WayStiffness>,
+    /// [N/m] stiffness along it, or a table, which holds both ways alike from `[0, 0]` on, or begins below 0; none if not given.
+    pub axial: Option<WayStiffness>,
     /// Which forces of the shaft along its axis it takes: `"both"`, `"+x"` or `"-x"`.
-    #[serde(default)]
     pub axial_way: AxialTaken,
-    /// [N m/rad] stiffness of a tilt; none if not given.
-    pub tilt: Option<RotationalStiffness>,
+    /// [N m/rad] stiffness of a tilt, or a table of angle and moment; none if not given.
+    pub tilt: Option<TurnStiffness>,
+    /// [N m/rad] stiffness of a twist, or a table of angle and moment, of a coupling alone; none if not given: its shafts turn freely against each other.
+    pub torsion: Option<TurnStiffness>,
     /// \[m] play across the axis: how far the shaft goes from the middle before it is held; 0 if not given.
     pub gap: Option<Length>,
     /// [N s/m] damping across the axis; none if not given.
@@ -108,6 +130,8 @@ pub struct StiffnessSection {
     pub axial_damping: Option<TranslationalDamping>,
     /// [N m s/rad] damping of a tilt; none if not given.
     pub tilt_damping: Option<RotationalDamping>,
+    /// [N m s/rad] damping of a twist, of a coupling alone; none if not given.
+    pub torsion_damping: Option<RotationalDamping>,
 }
 
 /// Which forces along its axis a bearing takes.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Vector3, Vector6};
-use roulement::model::link::spring_bearing::{AxialSupport, SpringBearing};
+use roulement::model::link::spring_bearing::{AxialSupport, Spring, SpringBearing};
 use roulement::model::link::tooth_mesh::{ToothFriction, ToothMesh, Varying};
 use roulement::model::link::variation::{Term, Variation};
 use roulement::model::link::{Law, Link};
@@ -117,7 +117,8 @@ fn tangents_of_links_are_differences_of_their_forces_and_forces_those_of_a_poten
     };
     let rubbing = ToothMesh { friction: Some(ToothFriction { arm: 0.004, slow: 0.5 }), ..varying.clone() };
     let bearing = SpringBearing {
-        stiffness: [3e8, 1e8, 1e3],
+        stiffness: [3e8, 1e8, 1e3].map(Spring::Linear),
+        torsion: None,
         damping: [200.0, 100.0, 0.2],
         gap: 5e-6,
         rest: Vector6::zeros(),

@@ -23,8 +23,7 @@ const BASE: f64 = 0.025 * 0.939_692_620_785_908_4;
 fn stage(changes: &[(&str, &str)]) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gearbox/planetary.toml");
     let text = std::fs::read_to_string(folder).unwrap();
-    let law =
-        "catalogue = \"6203\"\nset = { effects = { creep = \"saturated\", heathcote_slip = false } }";
+    let law = "catalogue = \"6203\"\nset = { effects = { creep = \"saturated\", heathcote_slip = false } }";
     let text = text.replace("catalogue = \"6203\"", law);
     changes.iter().fold(text, |text, (from, to)| {
         assert!(text.contains(from), "{from}");
@@ -45,8 +44,7 @@ fn force(system: &System, name: &str) -> Vector3<f64> {
 /// \[N] sizes of the normal forces of the sun's three meshes.
 fn shares(system: &System) -> [f64; 3] {
     [1, 2, 3].map(|n| {
-        let index =
-            system.scene().link_names().position(|own| own == format!("sun-planet{n}")).unwrap();
+        let index = system.scene().link_names().position(|own| own == format!("sun-planet{n}")).unwrap();
         system.outputs().links[index].teeth.normal_force.abs()
     })
 }
@@ -102,9 +100,12 @@ fn closed_form_pins_hold_their_planets_against_mass_times_radius_times_speed_squ
         for n in 1..=3u32 {
             let names = [format!("sun-planet{n}"), format!("planet{n}-ring"), format!("fit{n}")];
             let [sun, ring, pin] = names.map(|name| force(&system, &name));
-            let bearings = [2 * n - 2, 2 * n - 1].map(|index| system.bearings().nth(index as usize).unwrap().1);
-            let balls: f64 =
-                bearings.iter().map(|one| one.model().bearing.ball.mass * one.state().balls.len() as f64).sum();
+            let bearings =
+                [2 * n - 2, 2 * n - 1].map(|index| system.bearings().nth(index as usize).unwrap().1);
+            let balls: f64 = bearings
+                .iter()
+                .map(|one| one.model().bearing.ball.mass * one.state().balls.len() as f64)
+                .sum();
             let centrifugal = (0.37 + 0.071 + balls) * ARM * speed * speed;
             let radial = (ring - sun + pin).dot(&directions(n)[0]);
             // Parts are 10 to 20 um away from where they stand at rest.
@@ -214,7 +215,9 @@ fn a_planet_that_does_not_fit_between_the_teeth_is_refused() {
     let own = "origin = [0, \"-27 mm\", \"46.76537181 mm\"]";
     assert!(SystemScene::edited(&stage(&[(own, &at(110.0))])).is_ok());
     let why = SystemScene::edited(&stage(&[(own, &at(111.0))])).unwrap_err().to_string();
-    for part in ["shaft \"planet2\": shaft.origin", "stands 111.0000 deg", "25 + 83 teeth", "110.0000", "113.3333"] {
+    for part in
+        ["shaft \"planet2\": shaft.origin", "stands 111.0000 deg", "25 + 83 teeth", "110.0000", "113.3333"]
+    {
         assert!(why.contains(part), "{why}");
     }
 }

@@ -30,6 +30,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ("Varies", "mesh.stiffness_variation"),
     ("WrittenBearing", "bearing"),
     ("StiffnessSection", "bearing.stiffness"),
+    ("CouplingSection", "coupling"),
     ("Mounting", "bearing.mounting"),
     ("BoreTilt", "bearing.mounting.misalignment"),
     ("BoreOffset", "bearing.mounting.offset"),

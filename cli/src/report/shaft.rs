@@ -64,6 +64,9 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
         let forces = ["force.x", "force.y", "force.z"].map(|quantity| (quantity, "N"));
         let others = match index < scene.meshes.len() {
             true => vec![("normal_force", "N"), ("misalignment", "rad"), ("friction_power", "W")],
+            false if couples(scene, index) => {
+                vec![("moment.x", "N m"), ("moment.y", "N m"), ("moment.z", "N m"), ("twist", "rad")]
+            }
             false => vec![("moment.y", "N m"), ("moment.z", "N m")],
         };
         columns.extend(
@@ -77,7 +80,13 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
     columns
 }
 
-/// Values of these columns: forces of a mesh are those on its first gear, of a bearing by its stiffness those on the shaft.
+/// Is a link a coupling?
+fn couples(scene: &SystemScene, link: usize) -> bool {
+    let spring = link.checked_sub(scene.meshes.len()).and_then(|own| scene.springs.get(own));
+    spring.is_some_and(|spring| spring.second.is_some())
+}
+
+/// Values of these columns: forces of a mesh are those on its first gear, of a bearing by its stiffness those on the shaft, of a coupling those on its first shaft.
 pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
     let mut row = vec![outputs.time];
     row.extend(outputs.shafts.iter().flat_map(|own| [own.spin.angle, own.spin.speed, own.torque]));
@@ -93,6 +102,10 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
         match index < scene.meshes.len() {
             true => {
                 row.extend([link.teeth.normal_force, link.teeth.misalignment, link.teeth.friction_power]);
+            }
+            false if couples(scene, index) => {
+                row.extend(force.fixed_rows::<3>(3).iter());
+                row.push(link.state.displacement[3]);
             }
             false => row.extend(force.fixed_rows::<2>(4).iter()),
         }

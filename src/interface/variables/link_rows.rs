@@ -1,4 +1,4 @@
-//! The rows of meshes, and of bearings by their stiffness.
+//! The rows of meshes, of bearings by their stiffness, and of couplings.
 
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::LinkOutputs;
@@ -100,6 +100,35 @@ pub const SPRING: &[LinkRow] = &[
     }),
     row("moment.z", MOMENT, "moment on the shaft, z component, axes of the shaft, of", |link| {
         link.state.force[5]
+    }),
+    row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
+    row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {
+        link.state.damped
+    }),
+];
+
+/// Those of a coupling.
+pub const COUPLING: &[LinkRow] = &[
+    row("force.x", FORCE, "force on the first shaft, x component, axes of the shaft, of", |link| {
+        link.state.force[0]
+    }),
+    row("force.y", FORCE, "force on the first shaft, y component, axes of the shaft, of", |link| {
+        link.state.force[1]
+    }),
+    row("force.z", FORCE, "force on the first shaft, z component, axes of the shaft, of", |link| {
+        link.state.force[2]
+    }),
+    row("moment.x", MOMENT, "moment on the first shaft, x component, axes of the shaft, of", |link| {
+        link.state.force[3]
+    }),
+    row("moment.y", MOMENT, "moment on the first shaft, y component, axes of the shaft, of", |link| {
+        link.state.force[4]
+    }),
+    row("moment.z", MOMENT, "moment on the first shaft, z component, axes of the shaft, of", |link| {
+        link.state.force[5]
+    }),
+    row("twist", ANGLE, "turn of the first shaft against the second one, at", |link| {
+        link.state.displacement[3]
     }),
     row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
     row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {

@@ -309,7 +309,11 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         motion(&mut rows, Station::Seat(None, index), &prefix, &place, &[]);
     }
     for (index, name) in scene.link_names().enumerate() {
-        let of = if index < scene.meshes.len() { link_rows::MESH } else { link_rows::SPRING };
+        let of = match index.checked_sub(scene.meshes.len()).map(|own| scene.springs[own].second) {
+            None => link_rows::MESH,
+            Some(None) => link_rows::SPRING,
+            Some(Some(_)) => link_rows::COUPLING,
+        };
         rows.extend(of.iter().map(|LinkRow { key, unit, what, get }| {
             let (name, description) = (format!("{}.{key}", quoted(name)), format!("{what} {name}"));
             row(name, *unit, Causality::Output, description, ShaftSource::Link(index, *get))

@@ -8,6 +8,7 @@
 //! never negative.
 
 mod force;
+pub mod force_table;
 pub mod gear_pair;
 pub mod one_sided;
 pub mod spring_bearing;
@@ -75,7 +76,7 @@ impl LinkEnd {
 pub enum Law {
     /// Teeth in mesh.
     Mesh(ToothMesh),
-    /// A bearing by its stiffness.
+    /// A bearing by its stiffness, or a coupling.
     Spring(SpringBearing),
 }
 

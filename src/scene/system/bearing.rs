@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::mesh::SceneSpring;
+use super::spring::SceneSpring;
 use super::{MountedScene, SystemLoad};
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::scene::{Scene, SceneError};
@@ -64,6 +64,7 @@ impl WrittenBearing {
             name,
             shaft: shafts.iter().position(|own| shaft.as_ref() == Some(&own.name)).unwrap_or(0),
             position: mounting.position.0,
+            second: None,
             bore: mounting.bore(),
             housing: mounting.housing.and_then(|wanted| housings.iter().position(|own| own.name == wanted)),
             stiffness: stiffness?,

@@ -1,9 +1,9 @@
 //! Checks of the keys of a system.
 
 use super::bearing::WrittenBearing;
-use super::mesh::SceneSpring;
 use super::ranges::{BORE_OFFSET, BORE_TILT, GIVEN_DISPLACEMENT, GIVEN_ROTATION, INERTIA, MASS, POSITION};
-use super::{MountedScene, NamedLoad, Scene, Written, check_housing, mesh};
+use super::spring::SceneSpring;
+use super::{MountedScene, NamedLoad, Scene, Written, check_housing, spring};
 use crate::effects::gravity::GRAVITY;
 use crate::schema::numbers::Range;
 use crate::schema::{
@@ -48,6 +48,7 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
     }
     let mut names: Vec<&str> = written.bearing.iter().map(|bearing| bearing.name.as_str()).collect();
     names.extend(written.mesh.iter().map(|mesh| mesh.name.as_str()));
+    names.extend(written.coupling.iter().map(|coupling| coupling.name.as_str()));
     let shafts = &written.shaft.0;
     for shaft in shafts {
         names.push(&shaft.name);
@@ -212,16 +213,13 @@ fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Resul
         ("bearing.scene", bearing.scene.is_some()),
         ("bearing.catalogue", bearing.catalogue.is_some()),
         ("bearing.set", !bearing.set.is_empty()),
-        (
-            "bearing.mounting",
-            mounting.outer_shaft.is_some() || mounting.axial == AxialSeat::Free || preload,
-        ),
+        ("bearing.mounting", mounting.outer_shaft.is_some() || mounting.axial == AxialSeat::Free || preload),
     ];
     if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
         let why = "is for a bearing that is simulated; of one by its stiffness mounting has position, housing, offset and misalignment alone";
         return Err(inside(SceneError::conflict(key, why)));
     }
-    mesh::check_stiffness(stiffness).map_err(inside)
+    spring::check_bearing(stiffness).map_err(inside)
 }
 
 /// Every shaft is held along its axis.
@@ -233,12 +231,13 @@ pub fn held(
     for (index, shaft) in shafts.iter().enumerate() {
         let on = |bearing: &&MountedScene| bearing.shaft == index || bearing.outer_shaft == Some(index);
         let own = || bearings.iter().filter(on);
-        let by_spring = springs.iter().filter(|spring| spring.shaft == index);
-        let mut by_spring = by_spring.filter_map(|spring| spring.stiffness.axial);
+        // What the other shaft of a coupling holds is held.
+        let by_spring = springs.iter().filter(|spring| spring.shaft == index || spring.second == Some(index));
+        let mut by_spring = by_spring.filter_map(|spring| spring.stiffness.axial.as_ref());
         let driven = shaft.load.iter().any(|load| load.displacement.x.is_some());
         let held = driven
             || own().any(|bearing| bearing.mounting.axial == AxialSeat::Held && !goes_along(&bearing.scene))
-            || by_spring.any(|axial| axial.0 != 0.0);
+            || by_spring.any(|axial| axial.number() != Some(0.0));
         if shaft.matrices.is_some() || held {
             continue;
         }

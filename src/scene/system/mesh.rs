@@ -1,15 +1,16 @@
-//! Meshes of a system as they are read, bearings by their stiffness, and the trains of shafts that meshes make.
+//! Meshes of a system as they are read, and the trains of shafts that meshes and couplings make.
 
 use nalgebra::Vector3;
 
 use super::SystemScene;
+use super::spring::SceneSpring;
 use crate::model::link::gear_pair::{Gear, GearPair};
 use crate::model::link::tooth_mesh::{ToothFriction, Varying};
 use crate::model::link::variation::{Term, Variation};
 use crate::numerics::periodic_spline::PeriodicSpline;
 use crate::schema::numbers::Range;
 use crate::schema::units::{Quantity, Ratio};
-use crate::schema::{MeshSection, Over, SceneError, ShaftSection, StiffnessSection, Varies};
+use crate::schema::{MeshSection, Over, SceneError, ShaftSection, Varies};
 
 const MODULE: Range = Range::closed(1e-5, 1.0, "m");
 const PRESSURE_ANGLE: Range = Range::closed(0.1, 0.8, "rad");
@@ -18,7 +19,6 @@ const TEETH: Range = Range::closed(3.0, 1e4, "");
 const WIDTH: Range = Range::closed(1e-5, 10.0, "m");
 const SHIFT: Range = Range::closed(-3.0, 3.0, "");
 const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
-const NO_LESS: Range = Range::closed(0.0, 1e15, "N/m or N m/rad, and as much damping");
 const RATIO: Range = Range::closed(0.0, 10.0, "");
 const PLAY: Range = Range::closed(0.0, 0.1, "m");
 const FRICTION: Range = Range::closed(0.0, 1.0, "");
@@ -44,23 +44,6 @@ pub struct SceneMesh {
     pub shafts: [usize; 2],
     /// \[rad] how far the first gear is turned against the line of centres at the start: as a planet needs it that stands elsewhere than the first one.
     pub turned: f64,
-}
-
-/// A bearing by its stiffness.
-#[derive(Clone, Debug)]
-pub struct SceneSpring {
-    /// Its name.
-    pub name: String,
-    /// Index of its shaft.
-    pub shaft: usize,
-    /// \[m] position along that.
-    pub position: f64,
-    /// Index of the housing that it sits in; none in the ground.
-    pub housing: Option<usize>,
-    /// \[m, rad] how far its bore lies beside the axis of the shaft, and the tilt of that.
-    pub bore: (Vector3<f64>, Vector3<f64>),
-    /// Its keys.
-    pub stiffness: StiffnessSection,
 }
 
 impl SceneMesh {
@@ -283,25 +266,6 @@ fn check(section: MeshSection, shafts: &[ShaftSection]) -> Result<SceneMesh, Sce
     Ok(SceneMesh { section, shafts: of, turned: 0.0 })
 }
 
-/// Checks the keys of a bearing by its stiffness.
-///
-/// # Errors
-/// Names the key, the value and the range.
-pub fn check_stiffness(of: &StiffnessSection) -> Result<(), SceneError> {
-    STIFFNESS.check("bearing.stiffness.radial", of.radial.0)?;
-    let values = [
-        ("axial", of.axial.map(|k| k.0)),
-        ("tilt", of.tilt.map(|k| k.0)),
-        ("radial_damping", of.radial_damping.map(|c| c.0)),
-        ("axial_damping", of.axial_damping.map(|c| c.0)),
-        ("tilt_damping", of.tilt_damping.map(|c| c.0)),
-    ];
-    for (key, value) in values {
-        NO_LESS.check(&format!("bearing.stiffness.{key}"), value.unwrap_or(0.0))?;
-    }
-    PLAY.check("bearing.stiffness.gap", of.gap.map_or(0.0, |gap| gap.0))
-}
-
 /// The train that each shaft is in: its first shaft, and the turns of this one for one of that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InTrain {
@@ -311,8 +275,21 @@ pub struct InTrain {
     pub ratio: f64,
 }
 
+/// Turns of a shaft for one of another, which teeth or a coupling tie to it.
+struct Tie {
+    shafts: [usize; 2],
+    ratio: f64,
+}
+
+fn ties(meshes: &[SceneMesh], springs: &[SceneSpring]) -> Vec<Tie> {
+    let of_teeth = meshes.iter().map(|mesh| Tie { shafts: mesh.shafts, ratio: mesh.ratio() });
+    let couplings = springs.iter().filter_map(SceneSpring::couples);
+    of_teeth.chain(couplings.map(|shafts| Tie { shafts, ratio: 1.0 })).collect()
+}
+
 /// The trains of all shafts.
-pub fn trains(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Vec<InTrain> {
+pub fn trains(shafts: &[ShaftSection], meshes: &[SceneMesh], springs: &[SceneSpring]) -> Vec<InTrain> {
+    let ties = ties(meshes, springs);
     let rank = |shaft: &usize| match &shafts[*shaft] {
         one if one.speed.is_some() => 0,
         one if one.start_speed.is_some() => 1,
@@ -328,12 +305,11 @@ pub fn trains(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Vec<InTrain> {
         found[root] = Some(InTrain { root, ratio: 1.0 });
         let mut open = vec![root];
         while let Some(shaft) = open.pop() {
-            let ratio = found[shaft].map_or(1.0, |own| own.ratio);
-            for mesh in meshes {
-                let [one, other] = mesh.shafts;
-                for (from, to, by) in [(one, other, mesh.ratio()), (other, one, 1.0 / mesh.ratio())] {
+            let own = found[shaft].map_or(1.0, |own| own.ratio);
+            for Tie { shafts: [one, other], ratio } in &ties {
+                for (from, to, by) in [(*one, *other, *ratio), (*other, *one, 1.0 / ratio)] {
                     if from == shaft && found[to].is_none() {
-                        found[to] = Some(InTrain { root, ratio: ratio * by });
+                        found[to] = Some(InTrain { root, ratio: own * by });
                         open.push(to);
                     }
                 }
@@ -343,12 +319,16 @@ pub fn trains(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Vec<InTrain> {
     found.into_iter().flatten().collect()
 }
 
-/// Refuses speeds that meshes do not allow.
+/// Refuses speeds that meshes and couplings do not allow.
 ///
 /// # Errors
 /// Names the shaft.
-pub fn check_trains(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Result<(), SceneError> {
-    let trains = trains(shafts, meshes);
+pub fn check_trains(
+    shafts: &[ShaftSection],
+    meshes: &[SceneMesh],
+    springs: &[SceneSpring],
+) -> Result<(), SceneError> {
+    let trains = trains(shafts, meshes, springs);
     for (shaft, own) in shafts.iter().zip(&trains) {
         let root = &shafts[own.root];
         let given = shaft.speed.is_some() || shaft.start_speed.is_some();
@@ -361,11 +341,14 @@ pub fn check_trains(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Result<(),
         }
     }
     // A mesh closes a ring of others where its ratio has to be theirs.
-    for mesh in meshes {
-        let [one, other] = mesh.shafts.map(|shaft| trains[shaft].ratio);
-        if (one * mesh.ratio() / other - 1.0).abs() > 1e-12 {
-            let why = "its teeth do not allow the turns that the other meshes make";
-            return Err(SceneError::conflict(format!("mesh \"{}\"", mesh.section.name), why));
+    let names = meshes.iter().map(|mesh| format!("mesh \"{}\"", mesh.section.name));
+    let couplings = springs.iter().filter(|spring| spring.couples().is_some());
+    let names = names.chain(couplings.map(|spring| format!("coupling \"{}\"", spring.name)));
+    for (tie, name) in ties(meshes, springs).iter().zip(names) {
+        let [one, other] = tie.shafts.map(|shaft| trains[shaft].ratio);
+        if (one * tie.ratio / other - 1.0).abs() > 1e-12 {
+            let why = "it does not allow the turns that the other meshes make";
+            return Err(SceneError::conflict(name, why));
         }
     }
     Ok(())

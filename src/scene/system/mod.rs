@@ -10,15 +10,17 @@ pub mod mesh;
 mod numbers;
 mod planets;
 mod ranges;
+pub mod spring;
 
 use std::fmt;
 use std::path::Path;
 
 use bearing::{Catalogue, Shared, WrittenBearing};
-use mesh::{SceneMesh, SceneSpring};
+use mesh::SceneMesh;
 use nalgebra::Vector3;
 pub use numbers::{ShaftNumber, ShaftParameter};
 use serde::Deserialize;
+use spring::SceneSpring;
 use toml::{Table, Value};
 
 use super::{FrameMotion, Ranges, Scene, SceneError};
@@ -26,9 +28,9 @@ use crate::catalogue;
 use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
-    AxialSeat, Components, DutySection, GearSection, GivenMotion, HousingLoad, HousingSection, Matrices,
-    MeshSection, Mounting, PhaseSection, PointLoad, RotatingSection, Schedule, ShaftSection, Shafts, Solver,
-    explain, regular,
+    AxialSeat, Components, CouplingSection, DutySection, GearSection, GivenMotion, HousingLoad,
+    HousingSection, Matrices, MeshSection, Mounting, PhaseSection, PointLoad, RotatingSection, Schedule,
+    ShaftSection, Shafts, Solver, explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -42,7 +44,7 @@ pub struct SystemScene {
     pub housings: Vec<HousingSection>,
     /// Gears in mesh.
     pub meshes: Vec<SceneMesh>,
-    /// Bearings by their stiffness.
+    /// Bearings by their stiffness, then couplings.
     pub springs: Vec<SceneSpring>,
     /// The bearings.
     pub bearings: Vec<MountedScene>,
@@ -179,6 +181,9 @@ struct Written {
     /// Gears in mesh.
     #[serde(default)]
     mesh: Vec<MeshSection>,
+    /// Springs and dampers between two shafts.
+    #[serde(default)]
+    coupling: Vec<CouplingSection>,
     /// The bearings.
     bearing: Vec<WrittenBearing>,
     /// Simulated time, and distance of rows.
@@ -274,6 +279,7 @@ impl SystemScene {
             shaft: Shafts(mut shafts),
             mut housing,
             mesh,
+            coupling,
             bearing,
             load,
             phase: phases,
@@ -303,12 +309,17 @@ impl SystemScene {
         }
         let meshes = mesh.into_iter().map(|mesh| mesh::read(mesh, &shafts));
         let mut meshes = meshes.collect::<Result<Vec<_>, _>>().map_err(placed)?;
-        mesh::check_trains(&shafts, &meshes).map_err(placed)?;
+        let (springs, bearing): (Vec<_>, Vec<_>) =
+            bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
+        let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).map(Ok);
+        let couplings = coupling.into_iter().map(|coupling| spring::coupling(coupling, &shafts));
+        let springs = springs.chain(couplings).collect::<Result<Vec<_>, _>>().map_err(placed)?;
+        mesh::check_trains(&shafts, &meshes, &springs).map_err(placed)?;
         planets::place(&shafts, &mut meshes).map_err(placed)?;
         let speed = |train: mesh::InTrain| {
             train.ratio * shafts[train.root].speed.as_ref().map_or(0.0, |speed| speed.at(0.0))
         };
-        let turning = shafts.iter().zip(mesh::trains(&shafts, &meshes));
+        let turning = shafts.iter().zip(mesh::trains(&shafts, &meshes, &springs));
         let shafts_turn = turning.map(|(shaft, train)| (shaft.name.clone(), speed(train))).collect();
         let given = Shared {
             gravity: gravity.clone(),
@@ -318,10 +329,6 @@ impl SystemScene {
             folder: folder.to_path_buf(),
             catalogue,
         };
-        let (springs, bearing): (Vec<_>, Vec<_>) =
-            bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
-        let springs: Vec<_> =
-            springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).collect();
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let mut bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings, &shafts).map_err(placed)?;
@@ -406,7 +413,7 @@ impl SystemScene {
         self.shafts.iter().flat_map(|shaft| &shaft.rotating)
     }
 
-    /// Names of meshes, then of bearings by their stiffness.
+    /// Names of meshes, then of bearings by their stiffness, then of couplings.
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
         let meshes = self.meshes.iter().map(|mesh| mesh.section.name.as_str());
         meshes.chain(self.springs.iter().map(|spring| spring.name.as_str()))
@@ -415,7 +422,9 @@ impl SystemScene {
     /// Does a shaft twist? Of beams that carry a torque between gears, if the file does not say so.
     pub fn twists(&self, shaft: usize) -> bool {
         let section = &self.shafts[shaft];
-        let meshed = self.meshes.iter().any(|mesh| mesh.shafts.contains(&shaft));
+        let coupled = self.springs.iter().filter_map(SceneSpring::couples);
+        let mut tied = self.meshes.iter().map(|mesh| mesh.shafts).chain(coupled);
+        let meshed = tied.any(|shafts| shafts.contains(&shaft));
         !section.section.is_empty() && section.torsion.unwrap_or(meshed)
     }
 

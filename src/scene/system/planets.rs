@@ -54,8 +54,7 @@ fn partners(planet: &Planet, meshes: &[SceneMesh]) -> Option<[Partner; 2]> {
 /// The planets of a machine: shafts of which one gear meshes with two that are on another axis.
 fn planets(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Vec<Planet> {
     let axis = |shaft: usize| shafts[shaft].place(0.0);
-    let coaxial =
-        |one: usize, other: usize| (1..3).all(|k| (axis(one)[k] - axis(other)[k]).abs() <= ON_AXIS);
+    let coaxial = |one: usize, other: usize| (1..3).all(|k| (axis(one)[k] - axis(other)[k]).abs() <= ON_AXIS);
     let mut found = vec![];
     for shaft in 0..shafts.len() {
         let own: Vec<(usize, i64)> = meshes

@@ -316,7 +316,7 @@ fn initial_spins(scene: &SystemScene, inputs: &ShaftInputs, carriers: &[Carrier]
         driven.map(|((shaft, drive), carrier)| initial_spin(shaft, *drive, carrier.structure.turning, time));
     let own: Vec<Spin> = own.collect();
     // Shafts of a train turn as its teeth say.
-    let trains = trains(&scene.shafts, &scene.meshes).into_iter().enumerate();
+    let trains = trains(&scene.shafts, &scene.meshes, &scene.springs).into_iter().enumerate();
     let of_train = |(shaft, InTrain { root, ratio }): (usize, InTrain)| {
         let Spin { angle, speed, acceleration } = own[root];
         match shaft == root {

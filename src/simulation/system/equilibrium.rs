@@ -23,8 +23,8 @@ const WEIBULL: f64 = 10.0 / 9.0;
 #[derive(Clone, Debug)]
 pub struct MachineEquilibrium {
     title: String,
-    /// Names of meshes, then of bearings by their stiffness; how many are meshes.
-    links: (Vec<String>, usize),
+    /// Names of meshes, then of bearings by their stiffness, then of couplings; how many there are of the first two.
+    links: (Vec<String>, [usize; 2]),
     /// Names of the shafts.
     shafts: Vec<String>,
     /// Motion at all points of the shafts and their housings.
@@ -91,7 +91,8 @@ impl MachineEquilibrium {
         });
         let bearings = bearings.collect::<Result<_, SystemError>>()?;
         let shafts = scene.shafts.iter().map(|shaft| shaft.name.clone()).collect();
-        let links = (scene.link_names().map(String::from).collect(), scene.meshes.len());
+        let by_stiffness = scene.springs.iter().filter(|spring| spring.second.is_none()).count();
+        let links = (scene.link_names().map(String::from).collect(), [scene.meshes.len(), by_stiffness]);
         Ok(Self {
             title: scene.title.clone(),
             links,
@@ -141,6 +142,15 @@ impl MachineEquilibrium {
         };
         let mode = |mode: &ShaftMode| json!({ "frequency": mode.frequency, "damping": mode.damping, "whirl": mode.whirl.name(), "at": mode.place });
         let modes = |all: &[ShaftMode]| all.iter().map(mode).collect::<Vec<_>>();
+        let springs = |from: usize, count: usize| -> Map<_, _> {
+            let all = self.links.0.iter().zip(&outputs.links).skip(from).take(count);
+            let of = all.map(|(name, link)| {
+                let [force, moment] =
+                    [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
+                (name.clone(), json!({ "force": force, "moment": moment }))
+            });
+            of.collect()
+        };
         let [reference, modified] = self.hours();
         json!({
             "units": "SI: m, N, N m, rad, rad/s, Hz; life in h and million revolutions. Forces and moments are those on the shaft, in its axes; \
@@ -152,7 +162,7 @@ impl MachineEquilibrium {
                 (name.clone(), json!({ "speed": own.spin.speed, "torque": own.torque }))
             }).collect::<Map<_, _>>(),
             "bearings": self.bearings.iter().enumerate().map(bearing).collect::<Map<_, _>>(),
-            "meshes": self.links.0.iter().zip(&outputs.links).take(self.links.1).map(|(name, link)| {
+            "meshes": self.links.0.iter().zip(&outputs.links).take(self.links.1[0]).map(|(name, link)| {
                 let force = link.state.force.fixed_rows::<3>(0).into_owned();
                 let [first, second] = link.teeth.tilting_moments.each_ref().map(vector);
                 (name.clone(), json!({
@@ -161,10 +171,8 @@ impl MachineEquilibrium {
                     "axial_moment_on_second_gear": second, "friction_power": link.teeth.friction_power,
                 }))
             }).collect::<Map<_, _>>(),
-            "bearings_by_stiffness": self.links.0.iter().zip(&outputs.links).skip(self.links.1).map(|(name, link)| {
-                let [force, moment] = [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
-                (name.clone(), json!({ "force": force, "moment": moment }))
-            }).collect::<Map<_, _>>(),
+            "bearings_by_stiffness": springs(self.links.1[0], self.links.1[1]),
+            "couplings": springs(self.links.1[0] + self.links.1[1], self.links.0.len()),
             "life_of_all_hours": { "L10r": reference, "modified": modified },
             "modes": modes(&self.modes),
             "campbell": self.campbell.rows.iter().map(|row| json!({
@@ -267,7 +275,7 @@ impl fmt::Display for MachineEquilibrium {
 
 impl MachineEquilibrium {
     fn write_links(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (names, meshes) = &self.links;
+        let (names, [meshes, by_stiffness]) = &self.links;
         for (index, (name, link)) in names.iter().zip(&self.outputs.links).enumerate() {
             let on = &link.state.force;
             match index < *meshes {
@@ -292,6 +300,17 @@ impl MachineEquilibrium {
                         power => writeln!(f, ", their friction takes {power:.3} W")?,
                     }
                 }
+                false if index >= meshes + by_stiffness => writeln!(
+                    f,
+                    "\n{name:<16} force on the first shaft x {:.2} y {:.2} z {:.2} N, moment x {:.5} y {:.5} z {:.5} N m, twisted by {:.3} mrad",
+                    on[0],
+                    on[1],
+                    on[2],
+                    on[3],
+                    on[4],
+                    on[5],
+                    link.state.displacement[3] * 1e3
+                )?,
                 false => writeln!(
                     f,
                     "\n{name:<16} force on the shaft x {:.2} y {:.2} z {:.2} N, moment y {:.5} z {:.5} N m (by its stiffness)",

@@ -1,4 +1,4 @@
-//! Links of a system from its scene: meshes, then bearings by their stiffness; and the trains of shafts that meshes make.
+//! Links of a system from its scene: meshes, then bearings by their stiffness, then couplings.
 
 use nalgebra::Vector3;
 
@@ -8,26 +8,28 @@ use crate::model::link::{Law, Link, LinkEnd};
 use crate::model::state::stack;
 use crate::model::structure::Carrier;
 use crate::scene::system::SystemScene;
+use crate::scene::system::spring::spring as stiffness;
 use crate::schema::AxialTaken;
 
 /// [-] damping of a mesh over critical damping, where the scene does not say so.
 const DAMPING_RATIO: f64 = 0.05;
 
-/// Positions \[m] of a shaft's stations for its meshes, then for its bearings by their stiffness.
+/// Positions \[m] of a shaft's stations for its meshes, then for its bearings by their stiffness and its couplings.
 pub fn positions(scene: &SystemScene, shaft: usize) -> impl Iterator<Item = f64> {
     let meshes = scene.meshes.iter().flat_map(move |mesh| {
         let x = mesh.place(scene).x;
         let own = (0..2).filter(move |gear| mesh.shafts[*gear] == shaft);
         own.map(move |_| x - scene.shafts[shaft].place(0.0)[0])
     });
-    let springs = scene.springs.iter().filter(move |spring| spring.shaft == shaft);
-    meshes.chain(springs.map(|spring| spring.position))
+    let springs = scene.springs.iter().filter_map(move |spring| spring.position_on(shaft, &scene.shafts));
+    meshes.chain(springs)
 }
 
 /// Names of what is at these stations.
 pub fn names(scene: &SystemScene, shaft: usize) -> impl Iterator<Item = String> {
     let meshes = scene.meshes.iter().filter(move |mesh| mesh.shafts.contains(&shaft));
-    let springs = scene.springs.iter().filter(move |spring| spring.shaft == shaft);
+    let springs =
+        scene.springs.iter().filter(move |spring| [Some(spring.shaft), spring.second].contains(&Some(shaft)));
     meshes.map(|mesh| mesh.section.name.clone()).chain(springs.map(|spring| spring.name.clone()))
 }
 
@@ -80,9 +82,18 @@ pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
                 &Vector3::zeros(),
             ));
         }
+        ends.extend(spring.second.map(|second| end(second, &Vector3::zeros())));
         let of = &spring.stiffness;
         let law = SpringBearing {
-            stiffness: [of.radial.0, of.axial.map_or(0.0, |k| k.0), of.tilt.map_or(0.0, |k| k.0)],
+            stiffness: [
+                stiffness(of.radial.as_ref()),
+                stiffness(of.axial.as_ref()),
+                stiffness(of.tilt.as_ref()),
+            ],
+            torsion: of
+                .torsion
+                .as_ref()
+                .map(|torsion| (stiffness(Some(torsion)), of.torsion_damping.map_or(0.0, |c| c.0))),
             damping: [
                 of.radial_damping.map_or(0.0, |c| c.0),
                 of.axial_damping.map_or(0.0, |c| c.0),

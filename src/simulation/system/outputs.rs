@@ -46,7 +46,7 @@ pub struct ShaftOutputs {
     pub energies: StructureEnergies,
 }
 
-/// Outputs of a link: a mesh, or a bearing by its stiffness.
+/// Outputs of a link: a mesh, a bearing by its stiffness, or a coupling.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkOutputs {
     /// Forces and energies; forces are those on the first gear, or on the shaft.

@@ -9,6 +9,7 @@ use crate::dynamics::carried::SeatMotion;
 use crate::dynamics::system::{Joint, StructureLoad, StructureTrial};
 use crate::model::bodies::Race;
 use crate::model::link::one_sided::ROUGH;
+use crate::model::link::spring_bearing::SpringBearing;
 use crate::model::link::tooth_mesh::ToothMesh;
 use crate::model::link::{self, Law, Link, LinkForce};
 use crate::model::state::stack;
@@ -97,24 +98,31 @@ impl Statics<'_> {
         if turns.is_empty() {
             return;
         }
-        // Overlap of the first flank by these turns; that of the other is the opposite.
-        let by_turns = |mesh: &ToothMesh, link: &Link| {
+        // What a component of a displacement is by these turns.
+        let by_turns = |link: &Link, component: &Vector6<f64>| {
             let mut by = DVector::zeros(turns.len());
             for (index, end) in link.ends.iter().enumerate() {
                 if let Some(k) = turns.iter().position(|turn| *turn == end.structure)
                     && end.coordinates.last() == Some(&(states[end.structure].coordinates.len() - 1))
                 {
-                    let column = end.map.column(end.coordinates.len() - 1);
-                    by[k] -= mesh.normals[0].dot(&column.fixed_rows::<3>(0)) * link::sign(index);
+                    by[k] += component.dot(&end.map.column(end.coordinates.len() - 1)) * link::sign(index);
                 }
             }
             by
         };
+        // Overlap of the first flank; that of the other is the opposite.
+        let overlap = |mesh: &ToothMesh| -stack(&mesh.normals[0], &Vector3::zeros());
         let meshes = self.links.iter().enumerate().filter_map(|(index, link)| match &link.law {
-            Law::Mesh(mesh) => Some((index, mesh, by_turns(mesh, link))),
+            Law::Mesh(mesh) => Some((index, mesh, by_turns(link, &overlap(mesh)))),
             Law::Spring(_) => None,
         });
         let meshes: Vec<_> = meshes.collect();
+        let couplings = self.links.iter().filter_map(|link| match &link.law {
+            Law::Spring(SpringBearing { torsion: Some((torsion, _)), .. }) => {
+                Some((torsion.mean(), by_turns(link, &Vector6::ith(3, 1.0))))
+            }
+            _ => None,
+        });
         let mut torque = DVector::from_fn(turns.len(), |k, _| {
             let force = &self.loads[turns[k]].force;
             force[force.len() - 1]
@@ -122,6 +130,7 @@ impl Statics<'_> {
         let stiffness = meshes.iter().fold(DMatrix::zeros(turns.len(), turns.len()), |sum, (_, mesh, by)| {
             sum + by * by.transpose() * mesh.stiffness
         });
+        let stiffness = couplings.fold(stiffness, |sum, (torsion, by)| sum + &by * by.transpose() * torsion);
         let lu = stiffness.lu();
         let Some(first) = lu.solve(&torque) else { return };
         for (index, mesh, by) in &meshes {
@@ -140,7 +149,8 @@ impl Statics<'_> {
 
     /// Shafts whose turn is a matter of statics: those that a mesh holds against one of their train.
     fn free_turns(&self) -> Vec<usize> {
-        let trains = trains(&self.scene.shafts, &self.scene.meshes).into_iter().enumerate();
+        let SystemScene { shafts, meshes, springs, .. } = self.scene;
+        let trains = trains(shafts, meshes, springs).into_iter().enumerate();
         let free = trains.filter(|(shaft, train)| {
             train.root != *shaft && self.carriers[*shaft].structure.turning == Turning::Free
         });
