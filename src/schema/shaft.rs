@@ -26,6 +26,9 @@ pub struct ShaftSection {
     /// [N m] torque that drives the shaft; not with `speed`.
     #[serde(deserialize_with = "some::<Moment, _>")]
     pub torque: Option<Schedule>,
+    /// Is the shaft driven at a flange by another program? A package then has its angle as an input beside the speed, and follows both; the torque that the flange
+    /// takes is an output. Needs `speed`; a shaft with `torque` has a flange as it is: torque in, angle and speed out.
+    pub flange: bool,
     /// \[m] position at which speed or torque drives beams that twist, and that their turn is told of; the end of least position if not given.
     pub drive_position: Option<Length>,
     /// Do its beams twist? If not given, those of shafts with a mesh do.

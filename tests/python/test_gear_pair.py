@@ -146,7 +146,9 @@ class Model:
         self.start = numpy.linalg.solve(pressed, self.load + self.approach * STIFFNESS * self.free)
 
     def normal_force(self, time, place, rate):
-        varied = STIFFNESS * (1 + VARIES * math.sin(TEETH[0] * SPEED * time))
+        # Teeth come and go as the first gear turns against the line of centres that both take along: the second one has its share.
+        turned = SPEED * time - TEETH[1] / sum(TEETH) * place[10]
+        varied = STIFFNESS * (1 + VARIES * math.sin(TEETH[0] * turned))
         return varied * (self.approach @ place - self.free) + self.mesh_damping * (self.approach @ rate)
 
     def acceleration(self, time, place, rate):

@@ -8,7 +8,7 @@ use crate::common::{LIGHT, forces, gear_pair, system};
 
 /// Two gears: what drives the first shaft, which the second brakes.
 fn pair(keys: &str) -> String {
-    gear_pair([keys, "torque = 20", "backlash = 1e-4"], LIGHT, false, 15.0, 1.0)
+    gear_pair([keys, "torque = 20", "backlash = 1e-4"], LIGHT, false, 15.0, [1.0, -0.005])
 }
 
 /// \[s] communication step, and their number.
@@ -20,7 +20,11 @@ const GAIN: f64 = 5e3;
 
 /// Where the drive is at a time.
 fn at(time: f64) -> Motion {
-    Motion { value: 0.3 + 200.0 * time + 0.5 * GAIN * time * time, rate: 200.0 + GAIN * time, acceleration: GAIN }
+    Motion {
+        value: 0.3 + 200.0 * time + 0.5 * GAIN * time * time,
+        rate: 200.0 + GAIN * time,
+        acceleration: GAIN,
+    }
 }
 
 /// One communication step of a system whose first flange is given.

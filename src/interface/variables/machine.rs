@@ -184,7 +184,7 @@ impl MachineVariables {
         match shaft_source(&self.rows[reference])? {
             ShaftSource::Force(load, _) | ShaftSource::Moment(load, _) => Some(MachineGroup::Load(load)),
             ShaftSource::Gear(index) => Some(MachineGroup::Gear(index)),
-            ShaftSource::Drive(shaft) => Some(MachineGroup::Drive(shaft)),
+            ShaftSource::Drive(shaft) | ShaftSource::Flange(shaft, _) => Some(MachineGroup::Drive(shaft)),
             ShaftSource::Given(index, _) => Some(MachineGroup::Motion(index)),
             ShaftSource::Frame(..) => Some(MachineGroup::Frame),
             ShaftSource::Number(_)

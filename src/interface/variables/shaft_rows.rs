@@ -34,6 +34,8 @@ pub enum ShaftSource {
     Holding(usize),
     /// Such a motion or its rate; an input of the rate has the rate of that, too.
     Given(usize, MotionPart),
+    /// Angle or speed of the flange of a shaft, by its index; that of the speed has its rate, too.
+    Flange(usize, MotionPart),
     /// Motion of a station.
     Motion(Station, PointQuantity, usize),
 }
@@ -164,6 +166,10 @@ impl ShaftSource {
             Self::Holding(index) => outputs.holding[index],
             Self::Given(index, MotionPart::Value) => inputs.motions[index].value,
             Self::Given(index, MotionPart::Rate) => inputs.motions[index].rate,
+            Self::Flange(shaft, part) => inputs.flanges[shaft].map_or(0.0, |turn| match part {
+                MotionPart::Value => turn.value,
+                MotionPart::Rate => turn.rate,
+            }),
             Self::Motion(station, quantity, axis) => quantity.read(station.of(outputs), axis),
         }
     }
@@ -172,6 +178,9 @@ impl ShaftSource {
     pub fn rate(self, inputs: &ShaftInputs) -> f64 {
         match self {
             Self::Given(index, MotionPart::Rate) => inputs.motions[index].acceleration,
+            Self::Flange(shaft, MotionPart::Rate) => {
+                inputs.flanges[shaft].map_or(0.0, |turn| turn.acceleration)
+            }
             Self::Frame(quantity, axis) => {
                 inputs.frame.map_or(0.0, |frame| frame.rate.vector(quantity)[axis])
             }
@@ -195,6 +204,14 @@ impl ShaftSource {
             Self::Given(index, MotionPart::Value) => inputs.motions[index].value = value,
             Self::Given(index, MotionPart::Rate) => {
                 (inputs.motions[index].rate, inputs.motions[index].acceleration) = (value, rate);
+            }
+            Self::Flange(shaft, part) => {
+                if let Some(turn) = &mut inputs.flanges[shaft] {
+                    match part {
+                        MotionPart::Value => turn.value = value,
+                        MotionPart::Rate => (turn.rate, turn.acceleration) = (value, rate),
+                    }
+                }
             }
             Self::Number(_)
             | Self::Whole(..)
@@ -373,7 +390,9 @@ fn turn(scene: &SystemScene, shaft: usize, rows: &mut Vec<Variable>) {
     let (speed, torque) = ((units::RADIAN_PER_SECOND, 100.0), (units::NEWTON_METRE, 1.0));
     let drive = (Causality::Input, ShaftSource::Drive(shaft));
     let given_speed = section.speed.is_some();
+    let flange = |part| (Causality::Input, ShaftSource::Flange(shaft, part));
     let speed_from = match given_speed {
+        true if section.flange => flange(MotionPart::Rate),
         true => drive,
         false => (Causality::Output, ShaftSource::Whole(shaft, |o| o.spin.speed)),
     };
@@ -386,12 +405,16 @@ fn turn(scene: &SystemScene, shaft: usize, rows: &mut Vec<Variable>) {
     };
     add("speed", speed, speed_from, "speed of the shaft about its axis");
     add("torque", torque, torque_from, "torque that drives the shaft");
+    let angle = "turn of the shaft since time 0 at a given speed, since the start under a torque";
+    let angle_from = match section.flange {
+        true => flange(MotionPart::Value),
+        false => (Causality::Output, ShaftSource::Whole(shaft, |o| o.spin.angle)),
+    };
+    add("angle", (units::RADIAN, 100.0), angle_from, angle);
     let mut output = |name: &str, unit, description: &str, get: fn(&ShaftOutputs) -> f64| {
         let source = ShaftSource::Whole(shaft, get);
         rows.push(row(format!("{prefix}.{name}"), unit, Causality::Output, description.into(), source));
     };
-    let angle = "turn of the shaft since time 0 at a given speed, since the start under a torque";
-    output("angle", (units::RADIAN, 100.0), angle, |o| o.spin.angle);
     let joule = (units::JOULE, 1.0);
     output("energy.stored", joule, "kinetic and elastic energy of the shaft", |o| o.energies.stored);
     let work = "work of loads, weight and drive on the shaft since the start";

@@ -298,6 +298,10 @@ fn keys_of_shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
     for length in shaft.origin.iter().flatten() {
         POSITION.check("shaft.origin", length.0)?;
     }
+    if shaft.flange && shaft.speed.is_none() {
+        let why = "needs speed: it is driven by angle and speed; a shaft with torque has its angle and speed as outputs";
+        return Err(SceneError::conflict("shaft.flange", why));
+    }
     if shaft.start_speed.is_some() && shaft.speed.is_some() {
         return Err(SceneError::conflict(
             "shaft.start_speed",

@@ -312,7 +312,7 @@ impl SystemScene {
         let (springs, bearing): (Vec<_>, Vec<_>) =
             bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
         let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).map(Ok);
-        let couplings = coupling.into_iter().map(|coupling| spring::coupling(coupling, &shafts));
+        let couplings = coupling.iter().map(|coupling| spring::coupling(coupling, &shafts));
         let springs = springs.chain(couplings).collect::<Result<Vec<_>, _>>().map_err(placed)?;
         mesh::check_trains(&shafts, &meshes, &springs).map_err(placed)?;
         planets::place(&shafts, &mut meshes).map_err(placed)?;

@@ -64,10 +64,10 @@ pub fn spring<K: Quantity, X: Quantity, F: Quantity>(given: Option<&Stiffness<K,
 ///
 /// # Errors
 /// Names it, the key, the value and the range.
-pub fn coupling(section: CouplingSection, shafts: &[ShaftSection]) -> Result<SceneSpring, SceneError> {
+pub fn coupling(section: &CouplingSection, shafts: &[ShaftSection]) -> Result<SceneSpring, SceneError> {
     let inside =
         |source| SceneError::At { place: format!("coupling \"{}\"", section.name), source: Box::new(source) };
-    checked(&section, shafts).map_err(inside)
+    checked(section, shafts).map_err(inside)
 }
 
 fn checked(section: &CouplingSection, shafts: &[ShaftSection]) -> Result<SceneSpring, SceneError> {

@@ -8,7 +8,7 @@ use nalgebra::{DVector, Vector3};
 use super::super::inputs::Inputs;
 use super::super::together::Together;
 use super::super::{Simulation, SimulationError};
-use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin};
+use super::inputs::{Given, Played, ShaftInputs, ShaftPaths, scripted_spin, spin_of};
 use super::start::found_out;
 use super::statics::Statics;
 use super::{
@@ -311,9 +311,11 @@ fn outer_structure(scene: &SystemScene, bearing: usize) -> Option<usize> {
 
 /// Turns of the shafts at the start.
 fn initial_spins(scene: &SystemScene, inputs: &ShaftInputs, carriers: &[Carrier], time: f64) -> Vec<Spin> {
-    let driven = scene.shafts.iter().zip(&inputs.drives).zip(carriers);
-    let own =
-        driven.map(|((shaft, drive), carrier)| initial_spin(shaft, *drive, carrier.structure.turning, time));
+    let driven = scene.shafts.iter().zip(inputs.drives.iter().zip(&inputs.flanges)).zip(carriers);
+    let own = driven.map(|((shaft, (drive, flange)), carrier)| match flange {
+        Some(turn) => spin_of(turn),
+        None => initial_spin(shaft, *drive, carrier.structure.turning, time),
+    });
     let own: Vec<Spin> = own.collect();
     // Shafts of a train turn as its teeth say.
     let trains = trains(&scene.shafts, &scene.meshes, &scene.springs).into_iter().enumerate();

@@ -22,6 +22,8 @@ pub struct ShaftInputs {
     pub gears: Vec<f64>,
     /// Speed [rad/s] or torque [N m] of every shaft, whichever the scene drives it by.
     pub drives: Vec<f64>,
+    /// Turn of every shaft whose flange gives angle and speed; none of others.
+    pub flanges: Vec<Option<Motion>>,
     /// Motions that are given at named loads, in the order of [`SystemScene::motions`].
     pub motions: Vec<Motion>,
     /// Motion of the machine's frame, and gravity in it, where that may move.
@@ -42,7 +44,9 @@ impl ShaftInputs {
             accelerates: section.angular_acceleration.is_some(),
         });
         let motions = scene.motions().map(|(_, given)| motion_at(given, time)).collect();
-        Self { loads: scene.loads().map(wrench).collect(), gears, drives, motions, frame }
+        let flange = |shaft: &ShaftSection| shaft.flange.then(|| turned(&scripted_spin(shaft, time)));
+        let flanges = scene.shafts.iter().map(flange).collect();
+        Self { loads: scene.loads().map(wrench).collect(), gears, drives, flanges, motions, frame }
     }
 
     /// Are these those of the same system?
@@ -50,6 +54,7 @@ impl ShaftInputs {
         self.loads.len() == other.loads.len()
             && self.gears.len() == other.gears.len()
             && self.drives.len() == other.drives.len()
+            && same_flanges(&self.flanges, &other.flanges)
             && self.motions.len() == other.motions.len()
             && self.frame.is_some() == other.frame.is_some()
     }
@@ -112,6 +117,21 @@ impl Played {
             bearings: vec![Groups::ALL; scene.bearings.len()],
         }
     }
+}
+
+/// Have the same shafts flanges that give their turn?
+fn same_flanges<A, B>(one: &[Option<A>], other: &[Option<B>]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.is_some() == other.is_some())
+}
+
+/// A turn as a motion.
+fn turned(spin: &Spin) -> Motion {
+    Motion { value: spin.angle, rate: spin.speed, acceleration: spin.acceleration }
+}
+
+/// A motion as a turn.
+pub fn spin_of(motion: &Motion) -> Spin {
+    Spin { angle: motion.value, speed: motion.rate, acceleration: motion.acceleration }
 }
 
 /// Drive of a shaft.
@@ -189,6 +209,8 @@ pub struct ShaftPaths {
     torques: Vec<Ramp<1>>,
     /// Speed of every shaft, where that is given.
     turns: Vec<TurnPath>,
+    /// Turn of every shaft whose flange gives it.
+    flanges: Vec<Option<MotionPath>>,
     /// Motions that are given at named loads.
     motions: Vec<MotionPath>,
     /// Motion of the machine's frame, where that may move.
@@ -213,6 +235,11 @@ impl ShaftPaths {
             gears: inputs.gears.iter().map(|torque| Ramp::constant(SVector::from([*torque]))).collect(),
             torques: inputs.drives.iter().map(|drive| Ramp::constant(SVector::from([*drive]))).collect(),
             turns: turns.map(|(angle, drive)| TurnPath::steady(time, *angle, *drive)).collect(),
+            flanges: inputs
+                .flanges
+                .iter()
+                .map(|turn| turn.as_ref().map(|turn| MotionPath::steady(time, turn)))
+                .collect(),
             motions: inputs.motions.iter().map(|motion| MotionPath::steady(time, motion)).collect(),
             frame: inputs.frame.as_ref().map(FramePath::steady),
         }
@@ -224,12 +251,17 @@ impl ShaftPaths {
         let gears = self.gears.iter().zip(&inputs.gears);
         let torques = self.torques.iter().zip(&inputs.drives);
         let turns = self.turns.iter().zip(&inputs.drives);
+        let flanges = self.flanges.iter().zip(&inputs.flanges);
         let motions = self.motions.iter().zip(&inputs.motions);
         Self {
             loads: loads.map(|(now, next)| now.towards(time, next, duration)).collect(),
             gears: gears.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
             torques: torques.map(|(now, next)| now.towards(time, SVector::from([*next]), duration)).collect(),
             turns: turns.map(|(now, next)| now.towards(time, *next, duration)).collect(),
+            flanges: flanges
+                .map(|(now, next)| now.as_ref().zip(next.as_ref()))
+                .map(|both| both.map(|(now, next)| now.towards(time, next, duration)))
+                .collect(),
             motions: motions.map(|(now, next)| now.towards(time, next, duration)).collect(),
             frame: self.frame.zip(inputs.frame).map(|(now, next)| now.towards(time, &next, duration)),
         }
@@ -245,6 +277,7 @@ impl ShaftPaths {
         self.loads.len() == inputs.loads.len()
             && self.gears.len() == inputs.gears.len()
             && [self.torques.len(), self.turns.len()] == [inputs.drives.len(); 2]
+            && same_flanges(&self.flanges, &inputs.flanges)
             && self.motions.len() == inputs.motions.len()
             && self.frame.is_some() == inputs.frame.is_some()
     }
@@ -282,7 +315,10 @@ impl Given<'_> {
     pub fn spin(&self, shaft: usize, time: f64) -> Spin {
         match self.plays_drive(shaft) {
             true => scripted_spin(&self.scene.shafts[shaft], time),
-            false => self.paths.turns[shaft].at(time),
+            false => match &self.paths.flanges[shaft] {
+                Some(path) => spin_of(&path.at(time)),
+                None => self.paths.turns[shaft].at(time),
+            },
         }
     }
 
@@ -365,6 +401,9 @@ impl Given<'_> {
             inputs.drives[shaft] = drive;
             paths.torques[shaft] = Ramp::constant(SVector::from([drive]));
             paths.turns[shaft] = TurnPath::steady(time, self.spin(shaft, time).angle, drive);
+            inputs.flanges[shaft] = scripted.flanges[shaft];
+            paths.flanges[shaft] =
+                scripted.flanges[shaft].as_ref().map(|turn| MotionPath::steady(time, turn));
         }
         for (index, path) in paths.motions.iter_mut().enumerate() {
             if self.plays_motion(index) {
