@@ -25,7 +25,7 @@ pub fn resolve(mut scene: Scene) -> FoundOut<Scene> {
     Ok((scene, notes))
 }
 
-/// The same of a scene whose inputs an importer may set: within the ranges that it and its scripts give. Where it gives none for loads, poses or
+/// Effects found out of a scene whose inputs an importer may set: within the ranges that it and its scripts give. Where it gives none for loads, poses or
 /// speeds nothing is known of them, and effects that can be switched on are.
 ///
 /// # Errors
@@ -44,7 +44,7 @@ pub fn resolve_for_importer(mut scene: Scene) -> FoundOut<Scene> {
     Ok((scene, notes))
 }
 
-/// The same of the bearings of a shaft that ask for it, by the settled states of the whole shaft; for an importer, who may set loads and
+/// Effects found out of the bearings of a shaft that ask for it, by the settled states of the whole shaft; for an importer, who may set loads and
 /// speeds, within the ranges that it and its scripts give, and all that can be switched on where nothing gives these.
 ///
 /// # Errors
@@ -74,7 +74,7 @@ pub fn resolve_shaft(mut scene: SystemScene, for_importer: bool) -> FoundOut<Sys
     Ok((scene, notes))
 }
 
-/// The same of whatever a scene describes.
+/// Effects found out of whatever a scene describes.
 ///
 /// # Errors
 /// If there is no equilibrium to estimate from.

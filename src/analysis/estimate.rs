@@ -139,7 +139,7 @@ pub fn verdicts_of(machine: &machine::Machine) -> Vec<Verdicts> {
     }
 }
 
-/// The same of every bearing of a shaft, where shaft and housings put its races: with the whole shaft in balance again.
+/// Verdicts of every bearing of a shaft, where shaft and housings put its races: with the whole shaft in balance again.
 pub fn verdicts_of_shaft(scene: &SystemScene) -> Vec<Verdicts> {
     shaft_over_time(scene, &[])
 }
@@ -172,7 +172,7 @@ fn shaft_over_time(scene: &SystemScene, known: &[Verdicts]) -> Vec<Verdicts> {
     all
 }
 
-/// The same of a shaft whose inputs an importer may set: at all corners of the ranges of what acts on it, too.
+/// Verdicts of a shaft whose inputs an importer may set: at all corners of the ranges of what acts on it, too.
 pub fn verdicts_of_shaft_in_ranges(scene: &SystemScene) -> Vec<Verdicts> {
     let mut all = verdicts_of_shaft(scene);
     let read = |text: &str| {

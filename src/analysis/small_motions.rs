@@ -200,7 +200,7 @@ impl SmallMotions {
         part(|rate| rate.re) + part(|rate| rate.im)
     }
 
-    /// The same of the balls, but for their spins.
+    /// Kinetic energy of the balls, but for that of their spins.
     fn energy_of_balls(&self, unknowns: &DVectorView<'_, Complex<f64>>) -> f64 {
         let square = |k: usize| unknowns.rows(OF_BALL * k + 3, 3).iter().map(Complex::norm_sqr).sum::<f64>();
         self.balls.iter().enumerate().map(|(k, mass)| mass * square(k)).sum()

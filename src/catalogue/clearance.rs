@@ -1,6 +1,6 @@
 //! Classes of the radial internal clearance of deep-groove ball bearings (ISO 5753-1).
 
-use super::CatalogueError;
+use super::error::CatalogueError;
 
 /// Class of the radial internal clearance before mounting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -27,7 +27,7 @@ impl BearingStep<'_> {
         if !self.balls_are_independent() || !self.keeps_matrices() {
             return;
         }
-        self.charge_worn();
+        self.charge_stale();
         let mut correction = std::mem::take(&mut self.workspace.last_correction);
         correction.resize(unknowns.len(), 0.0);
         if self.correct_balls(&mut correction, |ball, size| self.goes_on_evenly(ball, size, unknowns)) {
@@ -54,7 +54,7 @@ impl BearingStep<'_> {
     }
 
     /// Charges blocks with corrections that have left too much. The next step begins with a new one where they have cost as much.
-    fn charge_worn(&mut self) {
+    fn charge_stale(&mut self) {
         let most = WORN * self.force_tolerance;
         let Workspace { balls, groups, kept, .. } = &mut *self.workspace;
         for (ball, (trial, KeptBlock { renewal, .. })) in balls.iter().zip(&mut kept.balls).enumerate() {

@@ -1,12 +1,12 @@
 //! The Newton matrix of a step: balls, eliminated, and what they leave in the bodies' rows. Many steps share both.
 //!
-//! A ball's block turns with its orbit and changes with its load, and blocks are computed anew one by one ([`super::wear`]).
+//! A ball's block turns with its orbit and changes with its load, and blocks are computed anew one by one ([`super::stale_blocks`]).
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3, Vector6};
 
 use super::equations::BearingStep;
 use super::group::Groups;
-use super::{Workspace, wear};
+use super::{Workspace, stale_blocks};
 use crate::model::bodies::{Body, Race};
 use crate::model::state::{BlockRenewal, KeptBlock, KeptBorder};
 use crate::numerics::arrowhead::{BLOCK, Block, Eliminated, Member, Offsets, Six};
@@ -178,7 +178,7 @@ impl BearingStep<'_> {
             if !self.balls_are_independent() {
                 self.factorise();
             }
-        } else if looked && self.rows_have_worn() {
+        } else if looked && self.rows_are_stale() {
             self.differentiate_bodies();
             self.factorise();
         }
@@ -336,7 +336,7 @@ impl BearingStep<'_> {
     }
 }
 
-/// Brings balls of bearings that are corrected together back where they are far out of balance, and renews blocks that have worn, before a
+/// Brings balls of bearings that are corrected together back where they are far out of balance, and renews blocks that are out of date, before a
 /// correction.
 pub(super) fn prepare_correction(bearings: &mut [BearingStep<'_>]) {
     for step in bearings.iter_mut() {
@@ -347,7 +347,7 @@ pub(super) fn prepare_correction(bearings: &mut [BearingStep<'_>]) {
     }
     let corrected = bearings.iter().any(|step| step.corrections > 0);
     if corrected {
-        wear::mark_stale(bearings);
+        stale_blocks::mark(bearings);
     }
     for step in bearings {
         if step.keeps_matrices() {

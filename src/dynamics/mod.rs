@@ -25,11 +25,11 @@ mod repair;
 mod spacing;
 mod stage_guess;
 mod stages;
+mod stale_blocks;
 mod step_turn;
 mod support;
 pub mod system;
 mod unbalance;
-mod wear;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector6};
 

@@ -6,7 +6,7 @@
 //! ```text
 //! m x'' = F_x,   m r'' = F_r + m r phi'^2,   sum of m r^2 phi'' = sum of r (F_t - 2 m r' phi')
 //! ```
-//! Of the six unknowns and rows of a ball those along the orbit are of no use: the unknown there is 0. What they would be is a share of the
+//! Unknowns and rows of a ball along the orbit, one of six each, are of no use: the unknown there is 0. What they would be is a share of the
 //! turn's, which all balls have in common ([`Shared`]). The force of its pocket is what a ball lacks of its share ([`SpacingTrial::press`]).
 
 use nalgebra::{Matrix6, Vector3, Vector6};

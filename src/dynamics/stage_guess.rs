@@ -4,9 +4,9 @@ use crate::numerics::esdirk::{PLACES, STAGES, extrapolation};
 
 /// Weights with which unknowns that are known before a stage go on to it.
 pub struct Known {
-    /// Of the start of the last step and its third stage.
+    /// Values at the start of the last step and in its third stage.
     pub old: [f64; 2],
-    /// Of the stages of this one.
+    /// Values in the stages of this one.
     pub new: [f64; STAGES - 1],
 }
 

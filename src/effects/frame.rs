@@ -57,7 +57,7 @@ impl FrameSection {
         }
     }
 
-    /// The same motion as a bearing of a machine sees it, at a place \[m] in the machine's axes; its x axis points along theirs (1), or
+    /// Motion as a bearing of a machine sees it, at a place \[m] in the machine's axes; its x axis points along theirs (1), or
     /// against it (-1, by half a turn about z).
     #[must_use]
     pub fn at_bearing(&self, place: &Vector3<f64>, direction: f64) -> Self {

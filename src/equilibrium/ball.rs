@@ -130,7 +130,7 @@ struct OwnBalance {
     outer_stiffness: f64,
 }
 
-/// The same for less: what settling a ball needs.
+/// Balance of a ball by itself: what settling it needs.
 fn balance_alone(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,
@@ -148,7 +148,7 @@ fn balance_alone(
     }
 }
 
-/// The same without derivatives.
+/// Balance of a ball, without derivatives.
 pub fn balance_value(
     model: &Model,
     contacts: &PerRace<ContactModel<'_>>,

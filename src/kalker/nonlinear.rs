@@ -64,7 +64,7 @@ pub struct Kalker {
     pub(super) monomial_values: DMatrix<f64>,
     /// Slip at the points by all coefficients: rows x of each point, then y.
     pub(super) slips: DMatrix<f64>,
-    /// The same as one column each of x and y of a point, and the squares of the slip over the contact, points by their
+    /// Slips as one column each of x and y of a point, and the squares of the slip over the contact, points by their
     /// areas and by what these are at rest.
     pub(super) slip_columns: DMatrix<f64>,
     pub(super) slip_squares: [DMatrix<f64>; 2],

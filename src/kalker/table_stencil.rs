@@ -73,7 +73,7 @@ impl<V: Values> Stencil<V> {
         across(&phi.0, &self.along_phi(nodes, &products(&t.0, &theta.0)))
     }
 
-    /// The same with their slopes.
+    /// Values with their slopes.
     #[inline(always)]
     fn values_with_slopes(&self, nodes: &[f64]) -> [[V; 3]; 4] {
         let Weights { t, theta, phi } = self.weights();

@@ -1,5 +1,6 @@
 //! The immutable model of a run: bearing, bodies, and the constants of their contacts.
 
+mod ball_state;
 pub mod bearing;
 pub mod bodies;
 pub mod cage;

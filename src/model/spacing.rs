@@ -6,8 +6,8 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::ball_state::BallState;
 use super::bearing::Bearing;
-use super::state::BallState;
 use crate::numerics::hermite::Hermite;
 
 /// Places of the balls.

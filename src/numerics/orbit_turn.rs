@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::arrowhead::{Six, Square};
+use super::arrowhead::block::{Six, Square};
 use super::scalar::Scalar;
 
 /// A rotation about the world's x axis.

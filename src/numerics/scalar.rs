@@ -297,7 +297,7 @@ impl<const N: usize> Dual<N> {
         Self { value, derivatives }
     }
 
-    /// The same in other directions: the first of them are kept, and there is none in more.
+    /// Number with derivatives in other directions: the first of them are kept, and there is none in more.
     pub fn resized<const M: usize>(self) -> Dual<M> {
         let derivatives = std::array::from_fn(|k| self.derivatives.get(k).copied().unwrap_or(0.0));
         Dual { value: self.value, derivatives }

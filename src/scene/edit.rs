@@ -96,7 +96,7 @@ fn change(section: &mut Table, key: &str, value: &str) -> Result<(), String> {
     }
 }
 
-/// The same of a key of a section or of a part of a list, whose own key is `at`.
+/// Change of a key of a section or of a part of a list, whose own key is `at`.
 fn change_in(inner: &mut Value, at: &str, key: &str, value: &str) -> Result<(), String> {
     let list = match inner {
         Value::Table(section) => return change(section, key, value),

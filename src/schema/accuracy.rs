@@ -9,10 +9,25 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, IntoDeserializer, MapAccess, Visitor};
 use strum::{IntoStaticStr, VariantArray};
 
-use super::follow::Follows;
 use super::units::{Quantity, Time};
 use crate::numerics::esdirk;
 use crate::numerics::newton::REFACTOR_CONTRACTION;
+
+/// Settings that follow the bearing, until [`Solver::follow`] has set them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follows {
+    /// Nothing: the settings are as they were given.
+    Nothing,
+    /// The step down to which energy is looked at.
+    Energy,
+    /// First and largest step, of an error goal.
+    Steps,
+    /// First and largest step and the tolerance: nothing was given. Is the first step given?
+    All {
+        /// Is the first step to follow, too?
+        initial_step: bool,
+    },
+}
 
 /// Time integration.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

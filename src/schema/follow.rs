@@ -1,23 +1,7 @@
 //! Settings of the time integration that follow the bearing, where nothing is said of them, and those of finer runs.
 
-use super::accuracy::Solver;
+use super::accuracy::{Follows, Solver};
 use super::units::Time;
-
-/// Settings that follow the bearing, until [`Solver::follow`] has set them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Follows {
-    /// Nothing: the settings are as they were given.
-    Nothing,
-    /// The step down to which energy is looked at.
-    Energy,
-    /// First and largest step, of an error goal.
-    Steps,
-    /// First and largest step and the tolerance: nothing was given. Is the first step given?
-    All {
-        /// Is the first step to follow, too?
-        initial_step: bool,
-    },
-}
 
 /// [-] smallest step that energy asks for, in periods of a ball between its races: an impact takes half a period.
 const ENERGY_PERIODS: f64 = 0.005;

@@ -24,11 +24,11 @@ mod support;
 pub mod units;
 pub mod variable_units;
 
-pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Level, Method, Solver};
+pub use accuracy::{Accuracy, ErrorGoal, ErrorOf, Follows, Level, Method, Solver};
 pub use components::Components;
 pub use duty::{DutySection, check_duty};
 pub use error::SceneError;
-pub use follow::{Follows, SMALLEST_TOLERANCE};
+pub use follow::SMALLEST_TOLERANCE;
 pub use housing::*;
 pub use inputs::{Giver, Group, Groups, InputGivers};
 pub use machine::{GearSection, Machine, RotatingSection};

@@ -101,7 +101,7 @@ impl Simulation {
         Self::of_model(scene, Model::new(scene)?, time)
     }
 
-    /// The same with a model that was built for the scene already, whose effects are as they are written.
+    /// Prepares a scene as [`Simulation::starting_at`] does, with a model that was built for it already, whose effects are as they are written.
     ///
     /// # Errors
     /// See [`SimulationError`].

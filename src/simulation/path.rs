@@ -167,7 +167,7 @@ impl RacePath {
         }
     }
 
-    /// The same path with the orientation led by the motion of the race's axis: the tilts go to where the announced ones
+    /// Path with the orientation led by the motion of the race's axis: the tilts go to where the announced ones
     /// lead, the spin speed changes linearly to the announced one.
     #[must_use]
     pub fn with_axis(self, start: (&Pose, &Twist), axis: &AxisInput, duration: f64) -> Self {

@@ -156,7 +156,7 @@ pub fn play<S: Scripted, B>(
     })
 }
 
-/// The same while an observer sees the start and every step.
+/// Plays while an observer sees the start and every step.
 ///
 /// # Errors
 /// As [`play`].

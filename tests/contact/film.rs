@@ -1,9 +1,9 @@
 //! Films of oil between balls and races: single contacts against independent data (tests/data/effects/README.md) and closed forms.
 
+use roulement::contact::film::ShearPressure;
 use roulement::contact::film::mixed::MixedFriction;
 use roulement::contact::film::rolling::{self, Inlet};
 use roulement::contact::film::thickness::{Ellipse, inlet_factor};
-use roulement::contact::film::traction::ShearPressure;
 use roulement::contact::film::{Film, FilmForces, Loading, Lubricant, RacewayFilm, Supply};
 use roulement::contact::hertz::HertzContact;
 use roulement::effects::film::oil::Oil;

@@ -8,7 +8,7 @@ use super::say;
 
 /// The reference of scenes, written from the structs that read them.
 const REFERENCE: &str = include_str!("../../../docs/scene.md");
-/// The same for editors.
+/// Keys of a scene for editors.
 const SCHEMA: &str = include_str!("../../../docs/scene.schema.json");
 
 /// Options of `roulement scene`.

@@ -42,7 +42,7 @@ pub fn measure(
     measure_some(scene, |_| true, threads, interrupted, done)
 }
 
-/// The same of those effects alone whose subjects are wanted.
+/// Measures those effects alone whose subjects are wanted.
 ///
 /// # Errors
 /// See [`measure`].

@@ -10,7 +10,7 @@ use roulement::simulation::outputs::{BallOutput, Outputs};
 use super::energy::EnergyWatch;
 use super::limits::Limits;
 use super::means::Means;
-use crate::watch::Phase;
+use crate::watch::phases::Phase;
 
 /// Figures by name.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use roulement::contact::REGULARISATION_SPEED;
 use roulement::interface::variables::quoted;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::losses::LOSSES;
@@ -209,28 +208,6 @@ fn of_housings(scene: &SystemScene, rows: &[SystemOutputs]) -> Vec<Panel> {
         of_seats("housing, tilt about y [urad]", |point| point.tilt.y * 1e6),
         of_seats("housing, tilt about z [urad]", |point| point.tilt.z * 1e6),
     ]
-}
-
-/// Warning of a shaft that creeps under a torque which its friction holds; none of one that moves or is driven by a speed.
-pub fn creeping(system: &System) -> Option<String> {
-    // Of several shafts, one that another drives creeps under no torque of its own.
-    let [ShaftOutputs { spin, torque, .. }] = &system.outputs().shafts[..] else { return None };
-    system.scene().shafts[0].torque.as_ref()?;
-    let torque = *torque;
-    let held: f64 = system.bearings().map(|(_, bearing)| bearing.outputs().friction_torque).sum();
-    // A ball's centre goes half as fast as the shaft's surface, and rolls as fast on both races.
-    let rolling = system.bearings().map(|(_, bearing)| 0.25 * bearing.model().bearing.pitch_diameter);
-    let rolling = spin.speed.abs() * rolling.fold(0.0, f64::max);
-    // One that starts is as slow, but what drives it makes it faster.
-    let rests = (torque.abs() - held).abs() < 0.5 * torque.abs();
-    (rests && rolling < REGULARISATION_SPEED).then(|| {
-        format!(
-            "the shaft creeps at {:.3e} rad/s under {torque:.3e} N m, which friction holds: its balls roll at {rolling:.1e} m/s, \
-             below v0 = {REGULARISATION_SPEED:e} m/s, where creep laws are viscous (docs/creep-laws.md); a real shaft stands \
-             still here",
-            spin.speed
-        )
-    })
 }
 
 /// Writes the summary of a shaft's run in words, with error bars where its figures and those of its bearings have them: of the shaft, and of

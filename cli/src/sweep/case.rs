@@ -84,7 +84,7 @@ pub fn run(
     }
 }
 
-/// The same from the text of a scene; one that is refused is a case that fails.
+/// Runs a case from the text of a scene; one that is refused is a case that fails.
 ///
 /// # Errors
 /// As [`run`].

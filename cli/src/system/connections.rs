@@ -2,7 +2,7 @@
 
 use super::components::Component;
 use super::interface::{Kind, Variable};
-use super::meant;
+use super::nearest::meant;
 
 /// An end of a connection: index of the component, name of the variable.
 pub type End = (usize, String);

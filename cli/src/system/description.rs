@@ -27,7 +27,7 @@ use std::path::PathBuf;
 use roulement::schema::units::{Quantity, Time};
 use toml::{Table, Value};
 
-use super::meant;
+use super::nearest::meant;
 
 /// Keys of a description.
 const KEYS: [&str; 6] = ["name", "step", "stop", "components", "connections", "start"];

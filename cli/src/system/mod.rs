@@ -3,6 +3,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `description` | the description, a TOML file |
+//! | `nearest` | the known name that is nearest to an unknown one |
 //! | `interface` | variables and units of a package, from its model description |
 //! | `components` | packages of all components: those that are there, and those that are made of scenes |
 //! | `connections` | connections of single variables, checked against the packages; signs of mountings, factors of units |
@@ -14,6 +15,7 @@ mod components;
 mod connections;
 mod description;
 mod interface;
+mod nearest;
 mod osp;
 mod ssp;
 mod start;
@@ -114,41 +116,4 @@ pub fn write(file: &Path, folder: &Path, libraries: &[PathBuf]) -> Result<Writte
     let ssp = folder.join(format!("{}.ssp", system.name));
     ssp::write(&system, &osp, &ssp)?;
     Ok(Written { ssp, osp, notes })
-}
-
-/// The one of these names that is nearest to a word: fewest letters to put in, take out or replace (Levenshtein).
-fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let letters: Vec<char> = word.chars().collect();
-    let edits = |name: &str| {
-        let mut row: Vec<usize> = (0..=letters.len()).collect();
-        for (i, other) in name.chars().enumerate() {
-            let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-            for (j, letter) in letters.iter().enumerate() {
-                let replaced = diagonal + usize::from(*letter != other);
-                diagonal = row[j + 1];
-                row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-            }
-        }
-        row[letters.len()]
-    };
-    names.into_iter().min_by_key(|name| edits(name))
-}
-
-/// The end of a message about a name that is not known.
-fn meant<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(word, names).map_or(String::new(), |name| format!("; the nearest name is {name}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::nearest;
-
-    #[test]
-    fn the_nearest_name_has_the_fewest_edits() {
-        let names = ["inner.force.x", "inner.moment.x", "outer.force.x"];
-        for (word, near) in [("inner.forc.x", 0), ("iner.momentx", 1), ("outer.force", 2), ("", 0)] {
-            assert_eq!(nearest(word, names), Some(names[near]), "{word}");
-        }
-        assert_eq!(nearest("inner", []), None);
-    }
 }

@@ -1,8 +1,9 @@
 //! Gatherer of a run step by step and row by row, whoever plays it: of every bearing, and of the shaft with its housings where there is one.
 
 mod bearing;
+mod life;
 mod part;
-mod phases;
+pub mod phases;
 mod shaft;
 
 use roulement::simulation::Simulation;
@@ -12,7 +13,8 @@ use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Observer;
 use roulement::simulation::system::System;
 
-pub use bearing::{BearingSeen, BearingWatch, Life, headlines};
+pub use bearing::{BearingSeen, BearingWatch, headlines};
+pub use life::Life;
 pub use part::PartSeen;
 pub use phases::{Extreme, Phase};
 pub use shaft::{ShaftSeen, ShaftWatch};

@@ -7,7 +7,7 @@ use roulement::effects::rating::Sums;
 use roulement::model::Model;
 use roulement::scene::PhaseSection;
 
-use super::bearing::Life;
+use super::life::Life;
 use crate::report::means::{Blocks, Means};
 use crate::report::quantities::Watched;
 

@@ -1,8 +1,9 @@
 //! Gatherer of a shaft with its housings in a run: means, energy, and rows that its error is told from.
 
+use roulement::contact::REGULARISATION_SPEED;
 use roulement::model::structure::StructureEnergies;
 use roulement::simulation::losses::LOSSES;
-use roulement::simulation::system::System;
+use roulement::simulation::system::{ShaftOutputs, System};
 
 use super::bearing::lengths;
 use super::part::{PartSeen, PartWatch};
@@ -12,7 +13,6 @@ use crate::report::figures::Figures;
 use crate::report::losses::Sums as LossSums;
 use crate::report::means::Blocks;
 use crate::report::quantities::ShaftQuantities;
-use crate::report::shaft::creeping;
 
 /// [-] of the largest force in a bearing, at its pitch radius: a torque of no account.
 const NOTHING: f64 = 1e-6;
@@ -136,4 +136,26 @@ fn lengths_of(system: &System) -> Lengths {
     let all = system.bearings().map(|(_, bearing)| lengths(bearing));
     let smaller = |a: Lengths, b: Lengths| if b.pitch_radius < a.pitch_radius { b } else { a };
     all.reduce(smaller).unwrap_or(Lengths { pitch_radius: 1.0, ball_diameter: 1.0 })
+}
+
+/// Warning of a shaft that creeps under a torque which its friction holds; none of one that moves or is driven by a speed.
+fn creeping(system: &System) -> Option<String> {
+    // Of several shafts, one that another drives creeps under no torque of its own.
+    let [ShaftOutputs { spin, torque, .. }] = &system.outputs().shafts[..] else { return None };
+    system.scene().shafts[0].torque.as_ref()?;
+    let torque = *torque;
+    let held: f64 = system.bearings().map(|(_, bearing)| bearing.outputs().friction_torque).sum();
+    // A ball's centre goes half as fast as the shaft's surface, and rolls as fast on both races.
+    let rolling = system.bearings().map(|(_, bearing)| 0.25 * bearing.model().bearing.pitch_diameter);
+    let rolling = spin.speed.abs() * rolling.fold(0.0, f64::max);
+    // One that starts is as slow, but what drives it makes it faster.
+    let rests = (torque.abs() - held).abs() < 0.5 * torque.abs();
+    (rests && rolling < REGULARISATION_SPEED).then(|| {
+        format!(
+            "the shaft creeps at {:.3e} rad/s under {torque:.3e} N m, which friction holds: its balls roll at {rolling:.1e} m/s, \
+             below v0 = {REGULARISATION_SPEED:e} m/s, where creep laws are viscous (docs/creep-laws.md); a real shaft stands \
+             still here",
+            spin.speed
+        )
+    })
 }

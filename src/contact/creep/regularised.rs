@@ -39,7 +39,7 @@ fn whole() -> f64 {
 }
 
 impl Parameters {
-    /// The same without coupling of spin and lateral creepage (phi_yz = phi_zy = 0, section 3.1.3).
+    /// Law without coupling of spin and lateral creepage (phi_yz = phi_zy = 0, section 3.1.3).
     pub fn uncoupled(self) -> Self {
         Self { coupling: 0.0, ..self }
     }

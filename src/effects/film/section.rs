@@ -3,8 +3,8 @@
 use serde::Deserialize;
 
 use super::oil::Oil;
+use crate::contact::film::ShearPressure;
 use crate::contact::film::mixed::MixedFriction;
-use crate::contact::film::traction::ShearPressure;
 use crate::effects::effect::Setup;
 use crate::effects::keys::Keys;
 use crate::schema::SceneError;

@@ -85,7 +85,7 @@ impl Partner {
         }
     }
 
-    /// The same as cold as it is given, and without a fit.
+    /// Part as cold as it is given, and without a fit.
     pub(super) fn cold(self) -> Self {
         Self { interference: None, rise: Schedule::default(), ..self }
     }

@@ -311,7 +311,7 @@ pub fn percent(share: f64) -> String {
     digits(100.0 * share) + " %"
 }
 
-/// The same of a change: "+1.23 %".
+/// Percentage of a change, with its sign: "+1.23 %".
 pub fn signed_percent(change: f64) -> String {
     // Below a thousandth of a percent is what searches leave.
     let change = if change.abs() < 1e-5 { 0.0 } else { change };

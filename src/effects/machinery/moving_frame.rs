@@ -24,7 +24,7 @@ pub struct FrameMotion {
 }
 
 impl FrameMotion {
-    /// The same motion in axes that point along these (1), or are turned by half a turn about z (-1).
+    /// Motion in axes that point along these (1), or are turned by half a turn about z (-1).
     #[must_use]
     pub fn seen_along(&self, direction: f64) -> Self {
         let signs = Vector3::new(direction, direction, 1.0);
@@ -87,7 +87,7 @@ pub struct FrameInputs {
 }
 
 impl FrameInputs {
-    /// The same inputs in axes that point along these (1), or are turned by half a turn about z (-1).
+    /// Inputs in axes that point along these (1), or are turned by half a turn about z (-1).
     #[must_use]
     pub fn seen_along(&self, direction: f64) -> Self {
         let [motion, rate] = [&self.motion, &self.rate].map(|of| of.seen_along(direction));
@@ -131,7 +131,7 @@ impl MovingFrame {
         turns.then_some(Self { arm: Vector3::zeros(), acceleration: Vector3::zeros(), ..*self })
     }
 
-    /// The same with each vector seen otherwise: in other axes, or as numbers that have derivatives.
+    /// Frame with each vector seen otherwise: in other axes, or as numbers that have derivatives.
     #[inline]
     pub fn seen<S: Scalar>(&self, see: impl Fn(&Vector3<f64>) -> Vector3<S>) -> MovingFrame<S> {
         MovingFrame {

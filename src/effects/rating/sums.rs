@@ -137,7 +137,7 @@ impl Sums {
         self.now.largest
     }
 
-    /// The same with another largest load \[N]: that of a part of the run.
+    /// Sums with another largest load \[N]: that of a part of the run.
     #[must_use]
     pub fn with_largest(self, largest: f64) -> Self {
         Self { largest, ..self }

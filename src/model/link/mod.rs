@@ -140,7 +140,7 @@ impl Link {
         }
     }
 
-    /// The same without what varies as the link turns: as statics and natural frequencies take it.
+    /// Force without what varies as the link turns: as statics and natural frequencies take it.
     pub fn mean_force(
         &self,
         displacement: &Vector6<f64>,

@@ -130,7 +130,7 @@ impl ToothMesh {
         self.force_with(self.varying.as_ref(), (displacement, rate), held)
     }
 
-    /// The same without what varies: as statics and natural frequencies take it.
+    /// Force without what varies: as statics and natural frequencies take it.
     pub fn mean_force(
         &self,
         displacement: &Vector6<f64>,

@@ -3,8 +3,9 @@
 //! Nodes have five coordinates: displacement along x, y, z and tilt about y and z; twist is apart ([`super::torsion`]). Consistent
 //! mass with rotary inertia, and gyroscopic matrix, after Friswell, Penny, Garvey and Lees, Dynamics of Rotating Machines (2010).
 
-use nalgebra::{DMatrix, DVector, Dyn, Matrix4, OMatrix, SMatrix, U3, Vector3};
+use nalgebra::{DMatrix, Dyn, Matrix4, OMatrix, SMatrix, U3, Vector3};
 
+use super::reduction::{modes, symmetric};
 use super::torsion::{ReducedTorsion, Torsion};
 use super::{Lump, Map};
 use crate::schema::{BeamSection, Material};
@@ -268,32 +269,6 @@ impl Beams {
         };
         self.nodes.iter().zip(&self.at_nodes).enumerate().map(lump).collect()
     }
-}
-
-/// Modes of a stiffness and a mass matrix up to an angular frequency, with unit generalised mass, by ascending frequency.
-pub(super) fn modes(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, highest: f64) -> (DMatrix<f64>, Vec<f64>) {
-    let none = (DMatrix::zeros(mass.nrows(), 0), vec![]);
-    let Some(cholesky) = mass.clone().cholesky() else { return none };
-    let lower = cholesky.l();
-    let Some(half) = lower.solve_lower_triangular(stiffness) else { return none };
-    let Some(scaled) = lower.solve_lower_triangular(&half.transpose()) else { return none };
-    let eigen = symmetric(&scaled).symmetric_eigen();
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    order.retain(|k| eigen.eigenvalues[*k] <= highest * highest);
-    let frequencies = order.iter().map(|k| eigen.eigenvalues[*k].max(0.0).sqrt()).collect();
-    let columns: Vec<DVector<f64>> =
-        order.iter().map(|k| eigen.eigenvectors.column(*k).into_owned()).collect();
-    if columns.is_empty() {
-        return none;
-    }
-    let shapes = lower.tr_solve_lower_triangular(&DMatrix::from_columns(&columns));
-    shapes.map_or(none, |shapes| (shapes, frequencies))
-}
-
-/// A matrix without what rounding has left of asymmetry.
-fn symmetric(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    (matrix + matrix.transpose()) * 0.5
 }
 
 /// The beam at a position.

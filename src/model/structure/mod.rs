@@ -11,6 +11,7 @@ mod beam;
 mod held;
 mod housing;
 mod lump;
+mod reduction;
 mod ring;
 mod shaft;
 mod torsion;

@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::beam::modes;
+use super::reduction::modes;
 
 /// A shaft that twists, by the twist of its nodes.
 #[derive(Clone, Debug)]

@@ -79,7 +79,7 @@ impl Member {
         own
     }
 
-    /// The same row by row.
+    /// Rows with moments in its own axes, from those in world axes.
     pub(super) fn own_rows(&self, world: &Matrix6<f64>) -> Matrix6<f64> {
         let mut own = *world;
         for i in 0..3 {
@@ -91,7 +91,7 @@ impl Member {
         own
     }
 
-    /// The other way round, column by column.
+    /// Vectors with moments in world axes, from those in its own, column by column.
     #[inline(always)]
     pub(super) fn world<const C: usize>(&self, own: &SMatrix<f64, BLOCK, C>) -> SMatrix<f64, BLOCK, C> {
         let mut world = *own;
@@ -104,7 +104,7 @@ impl Member {
         world
     }
 
-    /// The same row by row.
+    /// Rows with moments in world axes, from those in its own.
     #[inline(always)]
     pub(super) fn world_rows(&self, own: &Matrix6<f64>) -> Matrix6<f64> {
         let mut world = *own;

@@ -15,7 +15,7 @@
 //!
 //! Blocks may share one more unknown, a number without direction ([`Shared`]): its row and column are the border's, too.
 
-mod block;
+pub(super) mod block;
 mod eliminated;
 
 use nalgebra::{DMatrix, DVector, Matrix6, Vector6};

@@ -1,7 +1,8 @@
 //! Checks of the keys of a system.
 
 use super::bearing::WrittenBearing;
-use super::ranges::{BORE_OFFSET, BORE_TILT, GIVEN_DISPLACEMENT, GIVEN_ROTATION, INERTIA, MASS, POSITION};
+use super::check_motion::given_motion;
+use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
 use super::spring::SceneSpring;
 use super::{MountedScene, NamedLoad, Scene, Written, check_housing, spring};
 use crate::effects::gravity::GRAVITY;
@@ -379,29 +380,6 @@ fn keys_of_shaft(shaft: &ShaftSection) -> Result<(), SceneError> {
         given_motion(&NamedLoad::of_shaft(load))?;
     }
     sections(shaft)
-}
-
-/// Motions of a named load that are given: within their ranges, without a jump in speed, and not beside a force or a moment of their own.
-pub(super) fn given_motion(load: &NamedLoad<'_>) -> Result<(), SceneError> {
-    for (key, component, motion) in load.motion() {
-        let key = format!("{load}: {key}");
-        let (range, other, effort) = match component {
-            0..3 => (GIVEN_DISPLACEMENT, "force", &load.force.0[component]),
-            _ => (GIVEN_ROTATION, "moment", &load.moment.0[component - 3]),
-        };
-        motion.values().into_iter().try_for_each(|value| range.check(&key, value))?;
-        if !motion.begins_at_rest() {
-            let why = "a motion begins at rest, and a sine does so with phase = \"90 deg\" or \"-90 deg\"";
-            return Err(SceneError::conflict(key, why));
-        }
-        if effort.values().into_iter().any(|value| value != 0.0) {
-            let why = format!(
-                "is given and so is {other}: what it takes follows from the motion; give one of both"
-            );
-            return Err(SceneError::conflict(key, why));
-        }
-    }
-    Ok(())
 }
 
 /// Beams that make one piece.

@@ -1,7 +1,7 @@
 //! Checks of the keys of a housing.
 
 use super::NamedLoad;
-use super::check::given_motion;
+use super::check_motion::given_motion;
 use super::ranges::{INERTIA, MASS, POSITION};
 use crate::schema::numbers::Range;
 use crate::schema::units::{Length, Quantity};

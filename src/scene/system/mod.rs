@@ -6,6 +6,7 @@
 mod bearing;
 mod check;
 mod check_housing;
+mod check_motion;
 pub mod mesh;
 mod numbers;
 mod planets;

@@ -79,7 +79,7 @@ pub(in crate::schema) fn some_schedule<'de, Q: Quantity, D: Deserializer<'de>>(
     deserialize::<Q, D>(deserializer).map(Some)
 }
 
-/// The same of a value.
+/// Schedule of a value of TOML.
 ///
 /// # Errors
 /// One sentence.

@@ -189,7 +189,7 @@ impl Schedule {
         }
     }
 
-    /// The same of the difference to another.
+    /// Values of the difference to another.
     pub fn values_of_difference(&self, other: &Self) -> Vec<f64> {
         let signed = |sign: f64, of| Self::parts(of).iter().map(move |part| (sign, part));
         sum_values(&signed(1.0, self).chain(signed(-1.0, other)).collect::<Vec<_>>())

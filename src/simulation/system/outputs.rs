@@ -51,7 +51,7 @@ pub struct ShaftOutputs {
 pub struct LinkOutputs {
     /// Forces and energies; forces are those on the first gear, or on the shaft.
     pub state: LinkState,
-    /// Of teeth alone.
+    /// Outputs of teeth alone.
     pub teeth: TeethOutputs,
 }
 

@@ -13,12 +13,26 @@ pub mod rolling;
 pub mod thickness;
 pub mod traction;
 
+use serde::Deserialize;
+use strum::IntoStaticStr;
+
 use crate::numerics::elementary::ln;
 use crate::numerics::scalar::{Dual, Scalar, SmoothMap, Values};
 use mixed::MixedFriction;
 use rolling::Inlet;
 use thickness::Ellipse;
-use traction::ShearPressure;
+
+/// The pressure under which a film shears.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum ShearPressure {
+    /// The mean pressure of the contact.
+    #[default]
+    Mean,
+    /// Hertz's pressure, stresses integrated over the ellipse: light contacts that hardly slip carry up to ten times more.
+    Hertz,
+}
 
 /// [m/s] slip that is added to the true one as if at a right angle: friction of a film that does not slip at all is 0, and a creep law
 /// over a limit of 0 is none.

@@ -1,9 +1,6 @@
 //! Shear of a film: an Eyring fluid whose viscosity grows with pressure, up to a limiting shear stress.
 
-use serde::Deserialize;
-use strum::IntoStaticStr;
-
-use super::Lubricant;
+use super::{Lubricant, ShearPressure};
 use crate::numerics::elementary::{asinh, exp, ln};
 use crate::numerics::scalar::Scalar;
 
@@ -17,18 +14,6 @@ const LARGEST_GROWTH: f64 = 200.0;
 const LEAST_PRESSURE: f64 = 1e-3;
 /// \[Pa] the same where thinning is divided by a stress.
 const LEAST_STRESS: f64 = 1e-30;
-
-/// The pressure under which a film shears.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, IntoStaticStr)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum ShearPressure {
-    /// The mean pressure of the contact.
-    #[default]
-    Mean,
-    /// Hertz's pressure, stresses integrated over the ellipse: light contacts that hardly slip carry up to ten times more.
-    Hertz,
-}
 
 /// Places and weights of Gauss and Legendre's quadrature of six points over 0 to 1.
 const RINGS: [[f64; 2]; 6] = [
@@ -68,7 +53,7 @@ impl Lubricant {
         }
     }
 
-    /// The same by stresses under Hertz's pressure `1.5 p (1 - t)^(1/2)`, where t is the share of the ellipse's area within: a quadrature
+    /// Shear by stresses under Hertz's pressure `1.5 p (1 - t)^(1/2)`, where t is the share of the ellipse's area within: a quadrature
     /// over t, by places and weights. The thinning is the mean over the stress. Six places of Gauss are within 0.5 % of the integral for
     /// ordinary oils, 1.3 % at most from 0.3 to 2.7 GPa: the growth of viscosity with pressure, and the edge of the limiting stress, are what is missed.
     #[inline(always)]

@@ -1,9 +1,9 @@
 //! Which blocks of the Newton matrix are computed anew: each where the corrections that it was not good enough for have cost as much as
 //! it does.
 //!
-//! The rows of the bodies are computed anew with any block, and where they alone have worn.
+//! The rows of the bodies are computed anew with any block, and where they alone are out of date.
 //!
-//! Balls of all bearings that a border joins are corrected together: one whose block has worn costs all of them another correction.
+//! Balls of all bearings that a border joins are corrected together: one whose block is out of date costs all of them another correction.
 
 use super::equations::BearingStep;
 use crate::model::state::{BlockRenewal, KeptBlock};
@@ -60,7 +60,7 @@ struct Progress {
 ///
 /// From how far the last one has come it follows how many more are needed with the blocks there are. New ones lead there
 /// in one more; and what they would have saved in earlier steps counts as well.
-pub(super) fn mark_stale(bearings: &mut [BearingStep<'_>]) {
+pub(super) fn mark(bearings: &mut [BearingStep<'_>]) {
     let mut progress = Progress::default();
     for step in bearings.iter() {
         progress.balls += step.workspace.balls.len();
@@ -70,7 +70,7 @@ pub(super) fn mark_stale(bearings: &mut [BearingStep<'_>]) {
         step.mark_unsolved(&mut progress);
     }
     for step in bearings.iter_mut().filter(|step| step.keeps_matrices()) {
-        step.mark_worn(&progress);
+        step.mark_stale(&progress);
     }
 }
 
@@ -95,7 +95,7 @@ impl BearingStep<'_> {
     /// Shall the rows of the bodies be new after a correction that has not led to the solution, though no block is? They cost a tenth of what
     /// a correction does, so as soon as that saves one. What they lead to is seen in these rows alone: those of balls are met whatever the
     /// bodies do.
-    pub(super) fn rows_have_worn(&self) -> bool {
+    pub(super) fn rows_are_stale(&self) -> bool {
         let [now, before] = self.of_bodies;
         // As much is left of what is left as of what was before.
         !self.renewed_rows && !self.balls_are_independent() && now > 1.0 && now * now > before
@@ -113,7 +113,7 @@ impl BearingStep<'_> {
         }
     }
 
-    /// Marks the balls that are not solved, or those of them whose blocks have worn where each is alone; adds the others to what all have come to.
+    /// Marks the balls that are not solved, or those of them whose blocks are out of date where each is alone; adds the others to what all have come to.
     fn mark_unsolved(&mut self, progress: &mut Progress) {
         let together = !self.balls_are_independent();
         let tolerance = self.force_tolerance;
@@ -137,8 +137,8 @@ impl BearingStep<'_> {
         }
     }
 
-    /// Leaves those of the unsolved balls marked whose blocks have worn, where they are solved together.
-    fn mark_worn(&mut self, progress: &Progress) {
+    /// Leaves those of the unsolved balls marked whose blocks are out of date, where they are solved together.
+    fn mark_stale(&mut self, progress: &Progress) {
         if self.balls_are_independent() {
             return;
         }
