@@ -265,7 +265,7 @@ pub(super) fn find(name: &str) -> Result<Named, CatalogueError> {
         for (text, part) in parts {
             match part {
                 Part::Class(_) if angular => {
-                    named.ignored.push(ignore(text, "clearance of an angular-contact bearing"))
+                    named.ignored.push(ignore(text, "clearance of an angular-contact bearing"));
                 }
                 Part::Class(class) => named.clearance = Some(class),
                 Part::Hybrid => named.hybrid = true,

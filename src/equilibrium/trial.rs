@@ -61,6 +61,7 @@ impl<B> Trial<B> {
 }
 
 /// Axes of the outer race in the bearing frame, those that balls are looked at in.
+#[allow(clippy::large_enum_variant)] // one of an evaluation, never kept
 pub enum OuterAxes {
     /// Axes of a race that rests.
     Resting(UnitQuaternion<f64>),

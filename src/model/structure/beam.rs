@@ -325,6 +325,8 @@ fn rotary_mass(l: f64, phi: f64) -> Matrix4<f64> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DVector;
+
     use super::*;
     use crate::schema::units::Length;
 
