@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::text::short;
+use super::digits::short;
 use crate::effects::rating::standard::Geometry;
 
 /// [kg/m3] density of sheet steel.

@@ -23,6 +23,7 @@
 mod cage;
 mod clearance;
 mod designation;
+mod digits;
 mod error;
 mod estimate;
 mod request;

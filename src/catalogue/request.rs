@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use super::designation::find;
-use super::text::short;
+use super::digits::short;
 use super::{Bearing, CatalogueError, Clearance, Entry, SOURCE};
 use crate::schema::units::{Angle, Force, Length};
 

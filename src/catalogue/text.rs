@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use super::digits::{short, two_digits};
 use super::estimate::USUAL;
 use super::{Bearing, Cage, Candidate, CatalogueError, cage, rings};
 
@@ -19,22 +20,6 @@ impl Display for Candidate {
         let close = if outer < USUAL[1] { format!(", outer groove {outer} D") } else { String::new() };
         write!(f, "{balls} x {ball} mm{close} ({dynamic:+.1} % in C, {static_:+.1} % in C0)")
     }
-}
-
-/// A number with so many digits at most, without zeros at its end.
-pub(super) fn short(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let behind = (digits as i32 - 1 - value.abs().log10().floor() as i32).max(0) as usize;
-    let text = format!("{value:.behind$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
-}
-
-/// A number with two digits.
-fn two_digits(value: f64) -> f64 {
-    let unit = 10f64.powf(value.log10().floor() - 1.0);
-    (value / unit).round() * unit
 }
 
 impl Bearing {

@@ -27,14 +27,14 @@ impl MachineScene {
         Scene::load(path).map(Self::from)
     }
 
-    /// Reads the scene file of a package, a text that stands alone as [`MachineScene::source`] does.
+    /// Reads the scene file of a package, a text that stands alone as [`MachineScene::source`] does; of machines errors name no lines.
     ///
     /// # Errors
-    /// See [`SceneError`]; with the line.
+    /// See [`SceneError`].
     pub fn of_package(path: &Path) -> Result<Self, SceneError> {
         let text = regular::scene(path)?;
         if SystemScene::is_system(&text) {
-            return SystemScene::of_package(&text, &path.display().to_string()).map(Self::from);
+            return SystemScene::of_package(&text).map(Self::from);
         }
         Scene::load(path).map(Self::from)
     }

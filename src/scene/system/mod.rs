@@ -231,7 +231,7 @@ impl SystemScene {
         let placed = |error| explain::with_place(error, text, None, file);
         let read = |text: &str, file: Option<&str>| {
             let place = |error, spot| explain::with_place(error, text, spot, file);
-            Self::read(text, folder, catalogue::scene_of, place)
+            Self::read(text, folder, catalogue::scene_of, &place)
         };
         match Scene::with_files(text, folder).map_err(placed)? {
             // Lines of the text with the tables are not those that the reader of a message has.
@@ -250,18 +250,15 @@ impl SystemScene {
 
     /// The same, with the catalogue that its bearings are looked up in.
     fn alone(text: &str, catalogue: Catalogue) -> Result<Self, SceneError> {
-        Self::read(text, Path::new(""), catalogue, |error, _| error)
+        Self::read(text, Path::new(""), catalogue, &|error, _| error)
     }
 
     /// Reads the system of a package, whose text is that of [`SystemScene::source`]: its bearings have scenes and no designations.
     ///
     /// # Errors
     /// See [`SceneError`].
-    pub fn of_package(text: &str, file: &str) -> Result<Self, SceneError> {
-        let no_catalogue =
-            |_: &str| Err("a package has the scenes of its bearings, and no catalogue".to_string());
-        let place = |error, spot| explain::with_place(error, text, spot, Some(file));
-        Self::read(text, Path::new(""), no_catalogue, place)
+    pub fn of_package(text: &str) -> Result<Self, SceneError> {
+        Self::alone(text, |_| Err("a package has the scenes of its bearings, and no catalogue".into()))
     }
 
     /// Reads a system whose schedules name no files.
@@ -269,7 +266,7 @@ impl SystemScene {
         text: &str,
         folder: &Path,
         catalogue: Catalogue,
-        place: impl Fn(SceneError, Option<usize>) -> SceneError,
+        place: &dyn Fn(SceneError, Option<usize>) -> SceneError,
     ) -> Result<Self, SceneError> {
         check::elsewhere(text).map_err(|why| place(why, None))?;
         let written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;

@@ -356,7 +356,8 @@ pub fn meaning(doc: &str) -> String {
 }
 
 /// Lists of tables in other sections, with keys that an entry needs.
-pub const LISTS: [(&str, &[(&str, &str)]); 3] = [
+pub const LISTS: [(&str, &[(&str, &str)]); 4] = [
+    ("duty", &[("name", "\"a\""), ("share", "1.0")]),
     ("phase", &[("name", "\"a\""), ("from", "0"), ("to", "1e-3")]),
     ("load.rotating", &[("unbalance", "1e-5")]),
     ("load.gear", &[("torque", "1.0"), ("pitch_radius", "0.02"), ("pressure_angle", "0.3")]),

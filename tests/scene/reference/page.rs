@@ -41,7 +41,7 @@ fn place<'a>(schema: &'a mut Value, path: &str) -> &'a mut Value {
         let inside = if of_items { &mut inside["items"] } else { inside };
         let properties = inside["properties"].as_object_mut().unwrap_or_else(|| panic!("{path}"));
         properties.entry(key).or_insert_with(|| match path {
-            "defect" | "load.rotating" | "load.gear" | "phase" => {
+            "defect" | "load.rotating" | "load.gear" | "phase" | "duty" => {
                 json!({ "type": "array", "items": object() })
             }
             _ => object(),
