@@ -201,6 +201,7 @@ impl Reference {
             _ if own.is_some() => own.unwrap_or_default(),
             ("bool", _, _) => "`true`, `false`".to_string(),
             ("String", _, _) => "text".into(),
+            ("Table", _, _) => "keys with their sections".into(),
             (_, Some((_, variants)), _) => {
                 let of =
                     |(name, doc): &(String, String)| format!("`\"{name}\"`: {}", doc.trim_end_matches('.'));
@@ -235,6 +236,7 @@ impl Reference {
             ("bool", _) => json!({ "type": "boolean" }),
             ("CageKind", _) => json!({ "enum": [true, false, "ideal", "none"] }),
             ("String", _) => json!({ "type": "string" }),
+            ("Table", _) => json!({ "type": "object" }),
             (_, Some(names)) => json!({ "enum": names }),
             ("usize" | "u32", _) => json!({ "type": "integer" }),
             ("f64", _) => json!({ "type": "number" }),
@@ -268,6 +270,7 @@ impl Reference {
         Some(match kind.name.as_str() {
             "bool" => "`false`".into(),
             "String" => "`\"\"`".into(),
+            "Table" => "none".into(),
             _ if kind.several.is_some() => "none".into(),
             _ => "0".into(),
         })
