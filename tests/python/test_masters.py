@@ -123,6 +123,8 @@ def test_fmi_rs_runs_the_package():
         ["cargo", "test", "--quiet", "--locked"],
         cwd=ROOT / "tests" / "fmi_rs",
         env=environment,
+        # Cargo asks rustc by its standard input.
+        stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
     )

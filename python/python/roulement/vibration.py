@@ -16,6 +16,8 @@ ACCELERATION_REFERENCE = 1e-6
 VELOCITY_REFERENCE = 1e-9
 """Of levels in dB [m/s] (ISO 1683)."""
 _EVEN = 1e-6
+_FAINT = 1e-4
+"""Part of the power below which a band is none that blows are looked for in: a sensor would not tell it from its noise."""
 
 
 @dataclass(frozen=True)
@@ -118,8 +120,7 @@ def loudest_band(time, signal, lowest=0.0):
                 continue
             square = _envelope(spectrum, frequency, band, len(x))
             mean = square.mean()
-            # Bands without a signal are rounding.
-            if mean < 1e-12 * np.mean(x**2):
+            if mean < _FAINT * np.mean(x**2):
                 continue
             kurtosis = np.mean(square**2) / mean**2 - 2
             if kurtosis > best:
