@@ -65,6 +65,19 @@ fn orbit(system: &System, bearing: usize) -> f64 {
     state.balls.iter().map(of).sum::<f64>() / state.balls.len() as f64
 }
 
+/// The text of a package stands alone: it reads to the same machine.
+#[test]
+fn regression_the_text_of_a_package_has_the_hub_too() {
+    let planetary = std::fs::read_to_string("examples/gearbox/planetary.toml").unwrap();
+    for text in [idler("speed = 200"), planetary] {
+        let scene = SystemScene::edited(&text).unwrap();
+        let packed = SystemScene::of_package(&scene.source).unwrap_or_else(|why| panic!("{why}"));
+        assert_eq!(packed.source, scene.source);
+        let [one, other] = [&scene, &packed].map(|scene| System::new(scene).unwrap());
+        assert_eq!(one.outputs(), other.outputs());
+    }
+}
+
 #[test]
 fn closed_form_a_hub_that_turns_carries_its_belt_and_takes_the_balls_around() {
     let mut system = system(&idler(&format!("speed = {SPEED}")));

@@ -544,6 +544,12 @@ fn write_bearings(table: &mut Table, bearings: &[MountedScene], weighs: bool) {
         if let (Some(effects), true) = (scene.get_mut("effects").and_then(Value::as_table_mut), weighs) {
             effects.remove("gravity");
         }
+        // The shaft that an outer ring is a part of has its speed.
+        if let (Some(load), Some(_)) =
+            (scene.get_mut("load").and_then(Value::as_table_mut), bearing.outer_shaft)
+        {
+            load.remove("outer_speed");
+        }
         keys.insert("scene".into(), scene.into());
     }
 }
