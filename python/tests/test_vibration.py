@@ -1,7 +1,10 @@
 """Levels, envelopes and orders of signals whose lines are known."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import roulement
 from roulement import vibration
 
 RATE = 50e3
@@ -73,3 +76,19 @@ def test_signals_that_cannot_be_are_refused():
         vibration.envelope(time, np.sin(time), band=(3000, 30000))
     with pytest.raises(ValueError, match="one way"):
         vibration.orders(np.sin(time * 1e5), time)
+
+
+def test_regression_a_spall_is_told_by_levels_and_not_by_lines_over_the_rest():
+    """Figures of docs/python.md."""
+    file = Path(__file__).parents[2] / "scenes/effects/spall.toml"
+    spalled = roulement.Scene.load(file).with_({"load.duration": "120 ms", "load.output_interval": "10 us"})
+    found = {}
+    for name, scene in (("spalled", spalled), ("whole", spalled.with_({"defect": None}))):
+        run = roulement.run(scene, columns=["inner.velocity.*"], window=(20e-3, None))
+        acceleration = np.gradient(run["inner.velocity"][:, 1], run.time)
+        of = vibration.envelope(run.time, acceleration, band=(2e3, 10e3))
+        median = np.median(of.amplitude[(of.frequency > 50) & (of.frequency < 2000)])
+        line = of.at(178.58)
+        found[name] = vibration.levels(run.time, acceleration).rms, line, line / median
+    assert found["spalled"] == pytest.approx((1155, 3.6e6, 92), rel=0.1)
+    assert found["whole"] == pytest.approx((0.069, 6e-3, 85), rel=0.1)

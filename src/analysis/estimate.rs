@@ -176,6 +176,7 @@ fn shaft_over_time(scene: &SystemScene, known: &[Verdicts]) -> Vec<Verdicts> {
 pub fn verdicts_of_shaft_in_ranges(scene: &SystemScene) -> Vec<Verdicts> {
     let mut all = verdicts_of_shaft(scene);
     let read = |text: &str| {
+        // Its source stands alone, as that of a package.
         let mut scene = SystemScene::of_package(text)?;
         scene.bearings.iter_mut().for_each(|mounted| mounted.scene.effects.auto.on = false);
         Ok(scene)

@@ -68,11 +68,20 @@ pub struct ShaftSection {
     pub point: Vec<Point>,
 }
 
+/// \[m] how far axes that are one may be apart, by the digits of a file.
+const ON_AXIS: f64 = 1e-9;
+
 impl ShaftSection {
     /// \[m] place at a position \[m] along it.
     pub fn place(&self, position: f64) -> [f64; 3] {
         let [x, y, z] = self.origin.map_or([0.0; 3], |origin| origin.map(|length| length.0));
         [x + position, y, z]
+    }
+
+    /// Is its axis that of another shaft, up to the digits of a file?
+    pub fn is_coaxial_with(&self, other: &Self) -> bool {
+        let [one, other] = [self, other].map(|shaft| shaft.place(0.0));
+        (1..3).all(|k| (one[k] - other[k]).abs() <= ON_AXIS)
     }
 
     /// \[m] positions of everything on it: loads, points, discs, gears and forces that turn.

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use roulement::effects::rating::life_of_all;
 use roulement::model::bodies::Race;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
@@ -17,8 +18,6 @@ use super::{load, say, tell};
 const SHARE: &str = "share";
 /// [-] difference of the sum of the shares from 1 from which on it is told: they are rounded to two digits.
 const ROUNDED: f64 = 0.011;
-/// [-] slope of Weibull's distribution of the lives of ball bearings (ISO 281): those of several together.
-const WEIBULL: f64 = 10.0 / 9.0;
 /// Name of the machine in the column of its bearings.
 const MACHINE: &str = "(machine)";
 
@@ -258,10 +257,7 @@ fn say_machine(text: &mut String, load: &str, bearings: &[Rated], hours: Option<
     if bearings.len() < 2 {
         return;
     }
-    let lives = [0, 1].map(|which| {
-        let failures = bearings.iter().map(|of| of.hours()[which].map(|hours| hours.powf(-WEIBULL)));
-        failures.sum::<Option<f64>>().map(|failures| failures.powf(-1.0 / WEIBULL))
-    });
+    let lives = [0, 1].map(|which| life_of_all(bearings.iter().map(|of| of.hours()[which])));
     let [reference, modified] = lives;
     let numbers = [
         bearings.first().map(|of| of.share),

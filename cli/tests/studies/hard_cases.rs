@@ -218,3 +218,40 @@ fn regression_a_bearing_at_rest_costs_no_more_than_a_running_one_unless_somethin
     let header = "scene | steps a millisecond, running / standing / corrections a step standing";
     compare(DOCUMENT, "rest", header, &rows);
 }
+
+/// Loads of a standing bearing where nothing is said about steps, against a tolerance of 1e-10: within the 2 % that histories are promised.
+#[test]
+#[ignore = "a minute; scripts/soak runs it"]
+fn consistency_loads_of_a_standing_bearing_keep_two_percent() {
+    let along = ("load.x", "{ force = \"0.5 kN\" }");
+    let blow = ("load.y.force", "[[0, 1000], [0.001, 1000], [0.00105, 3000]]");
+    for (name, changes, end) in [
+        ("alternating, ideal cage", vec![ALTERNATING, IDEAL], 10e-3),
+        ("alternating, no cage", vec![ALTERNATING], 10e-3),
+        ("alternating across, along", vec![ALTERNATING, along], 6e-3),
+        ("a blow", vec![blow], 6e-3),
+    ] {
+        let usual = scene(GROOVE, &[&changes[..], &[STANDS, ("effects.creep", "\"kalker_table\"")]].concat());
+        let mut exact = usual.clone();
+        exact.solver.tolerance = 1e-10;
+        exact.solver.unresolved = 0.0;
+        let mut both =
+            [&usual, &exact].map(|scene| Simulation::new(scene).unwrap_or_else(|why| panic!("{why}")));
+        let (mut square, mut largest) = (0.0f64, 0.0f64);
+        let rows = 100;
+        for row in 1..=rows {
+            let time = end * f64::from(row) / f64::from(rows);
+            both.iter_mut().for_each(|of| of.advance_scripted(time).unwrap_or_else(|why| panic!("{why}")));
+            let [here, there] = [0, 1].map(|of| both[of].outputs());
+            let mut worst = 0.0f64;
+            for (one, other) in here.balls.iter().zip(&there.balls) {
+                worst = worst.max((one.inner.load - other.inner.load).abs());
+                largest = largest.max(other.inner.load);
+            }
+            square += worst * worst;
+        }
+        let error = (square / f64::from(rows)).sqrt() / largest;
+        println!("{name}: {:.2} %, {} steps", 100.0 * error, both[0].state().statistics.steps);
+        assert!(error < 0.02, "{name}: {error}");
+    }
+}

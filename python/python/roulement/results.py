@@ -52,7 +52,7 @@ class Results:
         else:
             found = [of for of in (f"{name}.{axis}" for axis in "wxyz") if of in self._places]
         if not found:
-            raise unknown(name, "column of this run", {_quantity(of) for of in self._places} | set(self._places))
+            raise unknown(name, "column of this run", dict.fromkeys([*map(_quantity, self._places), *self._places]))
         return found
 
     @property

@@ -30,8 +30,16 @@ const ANGLE: (Unit, f64) = (units::RADIAN, 1e-3);
 const POWER: (Unit, f64) = (units::WATT, 1.0);
 const ENERGY: (Unit, f64) = (units::JOULE, 1.0);
 
-/// Those of a mesh.
-pub const MESH: &[LinkRow] = &[
+/// Those of every link.
+const ENERGIES: &[LinkRow] = &[
+    row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
+    row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {
+        link.state.damped
+    }),
+];
+
+/// Those of a mesh alone.
+const OF_MESH: &[LinkRow] = &[
     row("force.x", FORCE, "force on the first gear, x component, axes of the shaft, of", |link| {
         link.state.force[0]
     }),
@@ -78,14 +86,10 @@ pub const MESH: &[LinkRow] = &[
         |link| link.teeth.tilting_moments[1].z,
     ),
     row("friction_power", POWER, "power lost to friction of the teeth of", |link| link.teeth.friction_power),
-    row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
-    row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {
-        link.state.damped
-    }),
 ];
 
-/// Those of a bearing by its stiffness.
-pub const SPRING: &[LinkRow] = &[
+/// Those of a bearing by its stiffness alone.
+const OF_SPRING: &[LinkRow] = &[
     row("force.x", FORCE, "force on the shaft, x component, axes of the shaft, of", |link| {
         link.state.force[0]
     }),
@@ -101,14 +105,10 @@ pub const SPRING: &[LinkRow] = &[
     row("moment.z", MOMENT, "moment on the shaft, z component, axes of the shaft, of", |link| {
         link.state.force[5]
     }),
-    row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
-    row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {
-        link.state.damped
-    }),
 ];
 
-/// Those of a coupling.
-pub const COUPLING: &[LinkRow] = &[
+/// Those of a coupling alone.
+const OF_COUPLING: &[LinkRow] = &[
     row("force.x", FORCE, "force on the first shaft, x component, axes of the shaft, of", |link| {
         link.state.force[0]
     }),
@@ -130,8 +130,11 @@ pub const COUPLING: &[LinkRow] = &[
     row("twist", ANGLE, "turn of the first shaft against the second one, at", |link| {
         link.state.displacement[3]
     }),
-    row("energy.stored", ENERGY, "energy stored in the springs of", |link| link.state.stored),
-    row("energy.dissipated", ENERGY, "energy lost to the damping since the start of", |link| {
-        link.state.damped
-    }),
 ];
+
+/// Rows of a mesh.
+pub const MESH: [&[LinkRow]; 2] = [OF_MESH, ENERGIES];
+/// Rows of a bearing by its stiffness.
+pub const SPRING: [&[LinkRow]; 2] = [OF_SPRING, ENERGIES];
+/// Rows of a coupling.
+pub const COUPLING: [&[LinkRow]; 2] = [OF_COUPLING, ENERGIES];

@@ -331,7 +331,7 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
             Some(None) => link_rows::SPRING,
             Some(Some(_)) => link_rows::COUPLING,
         };
-        rows.extend(of.iter().map(|LinkRow { key, unit, what, get }| {
+        rows.extend(of.into_iter().flatten().map(|LinkRow { key, unit, what, get }| {
             let (name, description) = (format!("{}.{key}", quoted(name)), format!("{what} {name}"));
             row(name, *unit, Causality::Output, description, ShaftSource::Link(index, *get))
         }));

@@ -3,13 +3,11 @@
 use super::bearing::WrittenBearing;
 use super::check_motion::given_motion;
 use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
-use super::spring::SceneSpring;
-use super::{MountedScene, NamedLoad, Scene, Written, check_housing, spring};
+use super::{MountedScene, NamedLoad, Written, check_housing, spring};
 use crate::effects::gravity::GRAVITY;
 use crate::schema::numbers::Range;
 use crate::schema::{
-    AxialSeat, Drive, Level, Mounting, Race, SceneError, ShaftSection, StiffnessSection, check_duty,
-    check_phases,
+    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_duty, check_phases,
 };
 
 /// Checks every value against its range, and the keys against one another.
@@ -221,47 +219,6 @@ fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Resul
         return Err(inside(SceneError::conflict(key, why)));
     }
     spring::check_bearing(stiffness).map_err(inside)
-}
-
-/// Every shaft is held along its axis.
-pub fn held(
-    shafts: &[ShaftSection],
-    bearings: &[MountedScene],
-    springs: &[SceneSpring],
-) -> Result<(), SceneError> {
-    for (index, shaft) in shafts.iter().enumerate() {
-        let on = |bearing: &&MountedScene| bearing.shaft == index || bearing.outer_shaft == Some(index);
-        let own = || bearings.iter().filter(on);
-        // What the other shaft of a coupling holds is held.
-        let by_spring = springs.iter().filter(|spring| spring.shaft == index || spring.second == Some(index));
-        let mut by_spring = by_spring.filter_map(|spring| spring.stiffness.axial.as_ref());
-        let driven = shaft.load.iter().any(|load| load.displacement.x.is_some());
-        let held = driven
-            || own().any(|bearing| bearing.mounting.axial == AxialSeat::Held && !goes_along(&bearing.scene))
-            || by_spring.any(|axial| axial.number() != Some(0.0));
-        if shaft.matrices.is_some() || held {
-            continue;
-        }
-        let which = if shafts.len() == 1 { "the shaft".into() } else { format!("shaft \"{}\"", shaft.name) };
-        let on_it = if shafts.len() == 1 { "" } else { " on it" };
-        if let Some(bearing) = own().find(|bearing| goes_along(&bearing.scene)) {
-            let why = format!(
-                "\"wrench\": nothing would hold {which} along its axis, as this outer race goes along; give it load.outer.x.displacement, or \
-                 another bearing{on_it} that is held"
-            );
-            return Err(SceneError::conflict(format!("bearing \"{}\": outer.drive", bearing.name), why));
-        }
-        let why = format!(
-            "nothing would hold {which} along its axis: at least one bearing{on_it} needs axial = \"held\""
-        );
-        return Err(SceneError::conflict("bearing.mounting.axial = \"free\"", why));
-    }
-    Ok(())
-}
-
-/// Does the outer race follow the inner one along the axis, under a wrench that does not hold it there?
-fn goes_along(scene: &Scene) -> bool {
-    scene.outer.drive == Drive::Wrench && Race::Outer.directions(scene)[0].motion.is_none()
 }
 
 /// How an outer ring sits.

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::SystemScene;
+use super::ranges::POSITION;
 use super::spring::SceneSpring;
 use crate::model::link::gear_pair::{Gear, GearPair};
 use crate::model::link::tooth_mesh::{ToothFriction, Varying};
@@ -31,7 +32,6 @@ const ERROR: Range = Range::closed(-1e-2, 1e-2, "m");
 const POINTS: Range = Range::closed(4.0, 100_000.0, "");
 /// [m/s] pitch line velocity over which friction of teeth takes its sign: slow beside any gear that runs, and seen by steps.
 const SLOW: f64 = 1e-3;
-const POSITION: Range = Range::closed(-1e3, 1e3, "m");
 /// [-] of the module: how far a centre distance may be from that at which the teeth touch on both flanks.
 const FITS: f64 = 0.5;
 

@@ -5,6 +5,7 @@
 
 mod bearing;
 mod check;
+mod check_held;
 mod check_housing;
 mod check_motion;
 pub mod mesh;
@@ -330,7 +331,7 @@ impl SystemScene {
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let mut bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::solvers(&bearings, &shafts).map_err(placed)?;
-        check::held(&shafts, &bearings, &springs).map_err(placed)?;
+        check_held::held(&shafts, &bearings, &springs).map_err(placed)?;
         for mounted in &mut bearings {
             let (place, direction) = (mounted.place(&shafts), mounted.mounting.direction.sign());
             let effects = &mut mounted.scene.effects;

@@ -14,8 +14,6 @@ use super::SceneError;
 use super::mesh::SceneMesh;
 use crate::schema::ShaftSection;
 
-/// \[m] how far axes that are one may be apart, by the digits of a file.
-const ON_AXIS: f64 = 1e-9;
 /// [-] of a tooth: how far a planet may stand beside a place where it fits, by the digits of a file.
 const FITS: f64 = 0.02;
 
@@ -53,8 +51,7 @@ fn partners(planet: &Planet, meshes: &[SceneMesh]) -> Option<[Partner; 2]> {
 
 /// The planets of a machine: shafts of which one gear meshes with two that are on another axis.
 fn planets(shafts: &[ShaftSection], meshes: &[SceneMesh]) -> Vec<Planet> {
-    let axis = |shaft: usize| shafts[shaft].place(0.0);
-    let coaxial = |one: usize, other: usize| (1..3).all(|k| (axis(one)[k] - axis(other)[k]).abs() <= ON_AXIS);
+    let coaxial = |one: usize, other: usize| shafts[one].is_coaxial_with(&shafts[other]);
     let mut found = vec![];
     for shaft in 0..shafts.len() {
         let own: Vec<(usize, i64)> = meshes

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::ranges::POSITION;
 use crate::model::link::force_table::ForceTable;
 use crate::model::link::spring_bearing::Spring;
 use crate::schema::numbers::Range;
@@ -11,11 +12,8 @@ use crate::schema::{AxialTaken, CouplingSection, SceneError, ShaftSection, Stiff
 const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
 const NO_LESS: Range = Range::closed(0.0, 1e15, "N/m, N m/rad, N s/m or N m s/rad");
 const PLAY: Range = Range::closed(0.0, 0.1, "m");
-const POSITION: Range = Range::closed(-1e3, 1e3, "m");
 const WAY: Range = Range::closed(-1.0, 1.0, "m or rad");
 const FORCE: Range = Range::closed(-1e9, 1e9, "N or N m");
-/// \[m] how far axes that are one may be apart.
-const ON_AXIS: f64 = 1e-9;
 
 /// A bearing by its stiffness, or a coupling.
 #[derive(Clone, Debug)]
@@ -84,8 +82,7 @@ fn checked(section: &CouplingSection, shafts: &[ShaftSection]) -> Result<SceneSp
     if of[0] == of[1] {
         return refuse("both are one shaft: a coupling joins two");
     }
-    let [one, other] = of.map(|shaft| shafts[shaft].place(0.0));
-    if (1..3).any(|axis| (one[axis] - other[axis]).abs() > ON_AXIS) {
+    if !shafts[of[0]].is_coaxial_with(&shafts[of[1]]) {
         return refuse("both must be on one axis: give them the same y and z of shaft.origin");
     }
     let stiffness = &section.stiffness;

@@ -11,13 +11,11 @@ use super::critical_speeds::{Campbell, campbell};
 use super::linear::ShaftMode;
 use super::{System, SystemError, SystemOutputs};
 use crate::analysis::condensed::Condensed;
+use crate::effects::rating::life_of_all;
 use crate::effects::reports::LifeOutput;
 use crate::model::bodies::Race;
 use crate::scene::system::SystemScene;
 use crate::simulation::outputs::Outputs;
-
-/// [-] exponent of the life of several bearings together: Weibull's of ball bearings (ISO/TS 16281; Lundberg and Palmgren 1947).
-const WEIBULL: f64 = 10.0 / 9.0;
 
 /// An equilibrium.
 #[derive(Clone, Debug)]
@@ -106,12 +104,7 @@ impl MachineEquilibrium {
 
     /// \[h] life of all bearings together, reference and modified; none where one of them has none.
     pub fn hours(&self) -> [Option<f64>; 2] {
-        [0, 1].map(|which| {
-            let of = |bearing: &BearingEquilibrium| bearing.hours?[which];
-            let each = self.bearings.iter().map(of).collect::<Option<Vec<f64>>>()?;
-            let failing: f64 = each.iter().map(|hours| hours.powf(-WEIBULL)).sum();
-            Some(failing.powf(-1.0 / WEIBULL))
-        })
+        [0, 1].map(|which| life_of_all(self.bearings.iter().map(|bearing| bearing.hours?[which])))
     }
 
     /// All of it, SI units.

@@ -34,7 +34,8 @@ const VANISHED: f64 = 0.01;
 const FAR: f64 = 0.01;
 /// \[N] normal force below which teeth are not pressed together.
 const NO_FORCE: f64 = 1e-9;
-/// [-] moment on both races together over the sizes of those on each, beyond which balls speed up or slow down.
+/// [-] moment on both races together over the sizes of those on each, beyond which balls speed up or slow down: 0 where they roll steadily, as one
+/// is the opposite of the other, and 1 where both drive or brake them. Halfway.
 const UNSTEADY: f64 = 0.5;
 /// Most steps.
 const MAX_ITERATIONS: u32 = 400;
