@@ -6,6 +6,8 @@
 //! ([`crate::dynamics::advance_perturbed`]). Before the first step they are those of the equilibrium that the simulation starts
 //! from.
 
+use std::collections::BTreeSet;
+
 use super::instance::Instance;
 use super::outcome::{Outcome, error};
 use super::state::Phase;
@@ -46,7 +48,7 @@ impl Instance {
             }
             Phase::Instantiated | Phase::StepComplete | Phase::Terminated | Phase::Fatal => {}
         }
-        let columns = self.columns()?;
+        let columns = self.columns_by(&knowns)?;
         for (unknown, result) in unknowns.iter().zip(results) {
             *result =
                 knowns.iter().zip(changes).map(|(known, change)| columns[*known][*unknown] * change).sum();
@@ -54,13 +56,20 @@ impl Instance {
         Ok(())
     }
 
-    /// Derivatives of all variables by every input, one column per input (columns of outputs are empty), computed when
-    /// first asked for at a communication point.
-    fn columns(&mut self) -> Outcome<&[Vec<f64>]> {
-        let columns = match self.columns.take() {
-            Some(columns) => columns,
-            None => self.unit.derivatives(self.state.before.as_ref(), &self.state.played)?,
-        };
+    /// Derivatives of all variables, one column per variable: those by inputs that were asked for at this communication point. Where some are
+    /// missing they are computed together; the first time at a point with those that were asked for at the last one, as an importer
+    /// that takes a matrix input by input asks for the same ones again.
+    fn columns_by(&mut self, knowns: &[usize]) -> Outcome<&[Vec<f64>]> {
+        let kept = self.columns.take();
+        let mut wanted = if kept.is_none() { std::mem::take(&mut self.asked) } else { BTreeSet::new() };
+        wanted.extend(knowns);
+        self.asked.extend(knowns);
+        let mut columns = kept.unwrap_or_else(|| vec![vec![]; self.unit.rows().len()]);
+        let missing: Vec<usize> = wanted.into_iter().filter(|known| columns[*known].is_empty()).collect();
+        if !missing.is_empty() {
+            let found = self.unit.derivatives(self.state.before.as_ref(), &self.state.played, &missing)?;
+            missing.into_iter().zip(found).for_each(|(input, column)| columns[input] = column);
+        }
         Ok(self.columns.insert(columns))
     }
 }

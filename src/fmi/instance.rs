@@ -1,5 +1,7 @@
 //! An instance: its start, its phases, its variables.
 
+use std::collections::BTreeSet;
+
 use super::log::Log;
 use super::outcome::{Outcome, Status, error};
 use super::resources;
@@ -31,8 +33,10 @@ pub struct Instance {
     pub present: Option<Vec<f64>>,
     /// Values of all variables at the point before, if a derivative by time was asked for.
     pub previous: Option<Vec<f64>>,
-    /// Derivatives of outputs by inputs at this point, if they were asked for.
+    /// Derivatives of outputs by inputs at this point: columns of inputs that were asked for.
     pub columns: Option<Vec<Vec<f64>>>,
+    /// Inputs by which derivatives were asked for at this point, or at the last one where some were.
+    pub asked: BTreeSet<usize>,
     /// Warnings that were given.
     warned: Warned,
     /// Watch on pressures and motions, for warnings in the log.
@@ -103,6 +107,7 @@ impl Instance {
             present: None,
             previous: None,
             columns: None,
+            asked: BTreeSet::new(),
             warned: Warned::default(),
             alarms: Alarms::default(),
         }
@@ -125,6 +130,7 @@ impl Instance {
             present: self.present.clone(),
             previous: self.previous.clone(),
             columns: self.columns.clone(),
+            asked: self.asked.clone(),
             warned: self.warned,
             alarms: self.alarms.clone(),
         }

@@ -215,8 +215,14 @@ fn unloaded() -> String {
 /// Seen from the balls nothing changes with time under a thrust: what the eigenvalues leave out is 0.
 #[test]
 fn invariant_growth_under_thrust_is_that_of_kicked_runs() {
-    ring("0.2 kg", 6000, 40e-3, 200).assert_growth(&[-939.0, 1042.0], 0.0, 0.2);
     ring("0.2 kg", 12000, 20e-3, 200).assert_growth(&[-882.0, 1085.0], 0.0, 0.2);
+    shaft("rotor", ROTOR, "150 mm", 20e-3, 200).assert_growth(&[-162.5, 167.5, -540.0, 750.0], 0.0, 0.2);
+}
+
+#[test]
+#[ignore = "half a minute (scripts/soak)"]
+fn invariant_growth_under_thrust_at_more_speeds_is_that_of_kicked_runs() {
+    ring("0.2 kg", 6000, 40e-3, 200).assert_growth(&[-939.0, 1042.0], 0.0, 0.2);
     ring("0.2 kg", 24000, 20e-3, 200).assert_growth(&[-789.0, 1209.0], 0.0, 0.2);
     ring("2 kg", 24000, 20e-3, 200).assert_growth(&[-399.0, 482.0], 0.0, 0.2);
     shaft("pinion without load", &unloaded(), "-10 mm", 20e-3, 200).assert_growth(
@@ -224,33 +230,42 @@ fn invariant_growth_under_thrust_is_that_of_kicked_runs() {
         0.0,
         0.2,
     );
-    shaft("rotor", ROTOR, "150 mm", 20e-3, 200).assert_growth(&[-162.5, 167.5, -540.0, 750.0], 0.0, 0.2);
+}
+
+/// A scene whose balls an ideal cage keeps apart on every bearing of a shaft.
+fn kept_apart(text: &str) -> String {
+    text.replace("[[bearing]]\n", "[[bearing]]\nset = { effects = { cage = \"ideal\" } }\n")
 }
 
 /// Balls that an ideal cage keeps apart cannot go along the orbit with a ring that shifts.
+fn assert_ring_kept_apart(mass: &str, rpm: &str, after: f64, frequencies: &[f64]) {
+    let text = THRUST.replace("creep = \"saturated\"", "cage = \"ideal\"");
+    let quoted = format!("\"{mass}\"");
+    let edits = [("load.inner_speed", rpm), ("inner.mass", &quoted)];
+    let case = bearing(&format!("ideal cage, {mass} at {rpm}"), &text, &edits, after, 200);
+    case.assert_growth(frequencies, 0.02, 1.0);
+}
+
 #[test]
 fn invariant_growth_of_balls_kept_apart_is_that_of_kicked_runs() {
-    let text = THRUST.replace("creep = \"saturated\"", "cage = \"ideal\"");
-    for (mass, rpm, after) in [("0.2 kg", "\"6000 rpm\"", 40e-3), ("2 kg", "\"24000 rpm\"", 20e-3)] {
-        let quoted = format!("\"{mass}\"");
-        let edits = [("load.inner_speed", rpm), ("inner.mass", &quoted)];
-        let case = bearing(&format!("ideal cage, {mass} at {rpm}"), &text, &edits, after, 200);
-        let [first, second] = if mass == "2 kg" { [-399.0, 482.0] } else { [-939.0, 1042.0] };
-        case.assert_growth(&[first, second], 0.02, 1.0);
-    }
-    let apart =
-        |text: &str| text.replace("[[bearing]]\n", "[[bearing]]\nset = { effects = { cage = \"ideal\" } }\n");
-    let pinion = shaft("pinion, ideal cages", &apart(&unloaded()), "-10 mm", 20e-3, 200);
+    assert_ring_kept_apart("2 kg", "\"24000 rpm\"", 20e-3, &[-399.0, 482.0]);
+    shaft("rotor, ideal cages", &kept_apart(ROTOR), "150 mm", 20e-3, 200).assert_growth(
+        &[-162.5, 167.5, -540.0, 750.0],
+        0.0,
+        0.5,
+    );
+}
+
+#[test]
+#[ignore = "half a minute (scripts/soak)"]
+fn invariant_growth_of_more_balls_kept_apart_is_that_of_kicked_runs() {
+    assert_ring_kept_apart("0.2 kg", "\"6000 rpm\"", 40e-3, &[-939.0, 1042.0]);
+    let pinion = shaft("pinion, ideal cages", &kept_apart(&unloaded()), "-10 mm", 20e-3, 200);
     pinion.assert_growth(&[1971.6, -1971.6, -2914.8, 2929.6], 0.0, 0.2);
     // Of what docs/model.md says: the swing of that shaft decays by 14 and 13 1/s where balls are free to go along with it.
     for frequency in [1971.6, -1971.6] {
         assert!(pinion.growth(frequency)[0] < 15.0 * -14.6, "{frequency} Hz");
     }
-    shaft("rotor, ideal cages", &apart(ROTOR), "150 mm", 20e-3, 200).assert_growth(
-        &[-162.5, 167.5, -540.0, 750.0],
-        0.0,
-        0.5,
-    );
 }
 
 /// Here something is left out: what changes while a ball passes, and while balls come to their speeds.

@@ -313,7 +313,7 @@ fn sequences(package: &Package, seeds: std::ops::Range<u64>) -> ([u32; 34], [u32
 #[test]
 fn invariant_random_sequences_of_calls_do_no_harm() {
     // scripts/memory asks for fewer: they run under valgrind there.
-    do_no_harm(std::env::var("ROULEMENT_SEQUENCES").map_or(125, |n| n.parse::<u64>().unwrap() / 2));
+    do_no_harm(std::env::var("ROULEMENT_SEQUENCES").map_or(50, |n| n.parse::<u64>().unwrap() / 2));
 }
 
 #[test]

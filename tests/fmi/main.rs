@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, unsafe_code)]
 #![allow(clippy::undocumented_unsafe_blocks)] // every pointer in here lives through its call
 
+mod asked;
 mod calls;
 mod damage;
 mod dependencies;

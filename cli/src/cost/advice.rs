@@ -25,7 +25,8 @@ fn combinations<'a>(points: &'a [Point], own: CreepModel, norm: Norm) -> Vec<Com
     let ok = |point: &'a Point| Some((point, point.result.as_ref().ok()?));
     let laws: Vec<(&Point, &Measured)> =
         points.iter().filter(|point| point.lever == Lever::CreepLaw).filter_map(ok).collect();
-    let numerical = [Lever::Default, Lever::Goal, Lever::FixedStep, Lever::Tolerance, Lever::StepCap];
+    let numerical =
+        [Lever::Default, Lever::Goal, Lever::FixedStep, Lever::Tolerance, Lever::Method, Lever::StepCap];
     let steps: Vec<(&Point, &Measured)> =
         points.iter().filter(|point| numerical.contains(&point.lever)).filter_map(ok).collect();
     let error = |measured: &Measured| measured.errors.get(norm).unwrap_or(f64::INFINITY);
@@ -119,6 +120,10 @@ fn step_of(point: Option<&Point>) -> String {
         Lever::Goal => format!(" with accuracy = \"{}\"", point.label),
         Lever::FixedStep => format!(" with fixed steps of {}", point.label),
         Lever::Tolerance => format!(" with tolerance = {} and no other limit of the step", point.label),
+        Lever::Method => {
+            let (method, tolerance) = point.label.split_once(", ").unwrap_or((&point.label, ""));
+            format!(" with method = \"{method}\", tolerance = {tolerance} and no other limit of the step")
+        }
         Lever::StepCap => format!(" with max_step = \"{}\"", point.label),
         lever => format!(" with {} {}", lever.name(), point.label),
     }

@@ -139,6 +139,7 @@ impl Look {
             Lever::Goal => Self { shape: Shape::Square, colour: BLACK, filled: true },
             Lever::FixedStep => circle(0, true),
             Lever::Tolerance => circle(1, true),
+            Lever::Method => circle(5, true),
             Lever::StepCap => circle(2, true),
             Lever::AlphaF => circle(3, true),
             Lever::MatrixReuse => circle(4, true),

@@ -6,6 +6,7 @@ use strum::{IntoStaticStr, VariantArray};
 use roulement::scene::machine::MachineScene;
 use roulement::scene::units::Time;
 use roulement::scene::{Accuracy, CreepLaw, Drive, Scales, Scene, Solver};
+use roulement::schema::Method;
 
 /// A setting that trades accuracy for speed; one curve in the plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, ValueEnum, VariantArray)]
@@ -28,6 +29,9 @@ pub enum Lever {
     /// Tolerance of the local error, the step being free.
     #[strum(serialize = "tolerance")]
     Tolerance,
+    /// Tolerance of the local error with the other method of time integration, the step being free.
+    #[strum(serialize = "method")]
+    Method,
     /// Largest step at the scene's tolerance.
     #[strum(serialize = "step cap")]
     StepCap,
@@ -275,13 +279,25 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
         .map(|&goal| changed(Lever::Goal, <&str>::from(goal).to_string(), &|s| follow(s, goal.solver())));
     let fixed = (0..=reference_halvings(scene) - ABOVE_REFERENCE)
         .map(|k| Setting::fixed_step(scene, interval * f64::from(-k).exp2()));
-    let tolerances = TOLERANCES.iter().map(|&tolerance| {
-        changed(Lever::Tolerance, format!("{tolerance:e}"), &|s| {
+    let toleranced = |lever, label: String, tolerance: f64, method: Method| {
+        changed(lever, label, &|s| {
+            s.solver.method = method;
             s.solver.tolerance = tolerance;
             // As where a scene gives one.
             s.solver.unresolved = 0.0;
             s.solver.max_step = Time(interval);
         })
+    };
+    let method = scene.solver().method;
+    let tolerances = TOLERANCES
+        .iter()
+        .map(|&tolerance| toleranced(Lever::Tolerance, format!("{tolerance:e}"), tolerance, method));
+    let kept_apart = scene.bearings().into_iter().any(|(_, scene)| scene.effects.cage.is_ideal());
+    // Balls that are kept at even spacing go by HHT alone.
+    let others = Method::VARIANTS.iter().filter(|&&other| other != method && !(kept_apart && other != Method::Hht));
+    let methods = others.flat_map(|&other| {
+        let name: &str = other.into();
+        TOLERANCES.map(|tolerance| toleranced(Lever::Method, format!("{name}, {tolerance:e}"), tolerance, other))
     });
     let caps = STEP_CAPS.iter().map(|&cap| {
         changed(Lever::StepCap, seconds(cap), &|s| {
@@ -321,6 +337,7 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
         .chain(goals)
         .chain(fixed)
         .chain(tolerances)
+        .chain(methods)
         .chain(caps)
         .chain(dampings)
         .chain(reuses)

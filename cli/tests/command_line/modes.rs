@@ -243,6 +243,7 @@ fn consistency_sweeps_tell_what_grows_of_bearings_and_shafts() {
 /// Output bearings that roll at 2 mm/s stick within the period of a vibration. An eigenvalue there is no growth: the run decays. How large it is
 /// depends on where the balls stand: at 175 rpm, from 9.1 to 2.5 1/s by the last digits of the balance; here 9.5 and 41 to 42.
 #[test]
+#[ignore = "20 s: nine bearings (scripts/soak)"]
 fn limit_contacts_that_are_not_rolled_over_in_a_period_feed_no_growth() {
     let gearbox = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/gearbox/three_stage.toml");
     let found = json(&["modes", gearbox.to_str().unwrap(), "--up-to", "120 rpm", "--speeds", "1", "--json"]);

@@ -2,7 +2,7 @@
 
 use super::Unit;
 use crate::fmi::outcome::{Outcome, Status, error};
-use crate::interface::variables::{Causality, InputKind, Kind, Variable};
+use crate::interface::variables::{InputKind, Variable};
 use crate::scene::Level;
 use crate::simulation::Simulation;
 use crate::simulation::driven::{MachineInputs, MachineSnapshot};
@@ -82,12 +82,16 @@ fn changes(simulation: &Simulation, duration: Option<f64>) -> Changes {
     }
 }
 
-/// Derivatives of all variables by every input, one column per input (columns of outputs are empty): of the step since a point, or of
-/// the start.
+/// Derivatives of all variables by some inputs (their references), one column per input: of the step since a point, or of the start.
 ///
 /// # Errors
 /// If they do not exist here.
-pub fn columns(unit: &Unit, before: Option<&MachineSnapshot>, played: &Played) -> Outcome<Vec<Vec<f64>>> {
+pub fn columns(
+    unit: &Unit,
+    before: Option<&MachineSnapshot>,
+    played: &Played,
+    inputs: &[usize],
+) -> Outcome<Vec<Vec<f64>>> {
     let Unit { variables, machine, .. } = unit;
     let failed = |why: MachineError| (Status::Error, format!("no directional derivatives here: {why}"));
     // Equilibria know no duration.
@@ -96,7 +100,6 @@ pub fn columns(unit: &Unit, before: Option<&MachineSnapshot>, played: &Played) -
     let changes = machine.bearings().map(|(_, bearing)| changes(bearing, duration)).reduce(Changes::smaller);
     let Some(changes) = changes else { return error("there is no bearing") };
     let rows = variables.rows();
-    let inputs = knowns(rows);
     let (values, rates) = (variables.values(machine), variables.rates(machine));
     let moved = |index: usize, sign: f64| moved(&rows[index], values[index], sign, &changes);
     let perturbed = |index: usize, sign: f64| -> Outcome<MachineInputs> {
@@ -104,7 +107,7 @@ pub fn columns(unit: &Unit, before: Option<&MachineSnapshot>, played: &Played) -
         values[index] = moved(index, sign);
         variables.inputs(&values, &rates, machine).or_else(|why| error(why.to_string()))
     };
-    let perturbations = both_ways(&inputs, perturbed)?;
+    let perturbations = both_ways(inputs, perturbed)?;
     let ends = match before {
         Some(before) => {
             let mut central = machine.clone();
@@ -124,14 +127,7 @@ pub fn columns(unit: &Unit, before: Option<&MachineSnapshot>, played: &Played) -
         }
     };
     let of: Vec<_> = ends.iter().map(|end| variables.values(end)).collect();
-    Ok(differences(rows.len(), &inputs, &of, |index| moved(index, 1.0) - moved(index, -1.0)))
-}
-
-/// References of the inputs that there are derivatives by.
-fn knowns(rows: &[Variable]) -> Vec<usize> {
-    let inputs = rows.iter().enumerate();
-    let inputs = inputs.filter(|(_, row)| row.causality == Causality::Input && row.kind == Kind::Real);
-    inputs.map(|(index, _)| index).collect()
+    Ok(differences(inputs, &of, |index| moved(index, 1.0) - moved(index, -1.0)))
 }
 
 /// A changed value of an input.
@@ -146,17 +142,11 @@ fn both_ways<P>(inputs: &[usize], perturbed: impl Fn(usize, f64) -> Outcome<P>) 
     signs.map(|(index, sign)| perturbed(index, sign)).collect()
 }
 
-/// Derivatives of so many rows by every input from their values under each pair of perturbations, and how far these are apart.
-fn differences(
-    rows: usize,
-    inputs: &[usize],
-    values: &[Vec<f64>],
-    apart: impl Fn(usize) -> f64,
-) -> Vec<Vec<f64>> {
-    let mut columns = vec![vec![]; rows];
-    for (&index, pair) in inputs.iter().zip(values.chunks_exact(2)) {
+/// Derivatives of all rows by inputs, from their values under each pair of perturbations, and how far these are apart.
+fn differences(inputs: &[usize], values: &[Vec<f64>], apart: impl Fn(usize) -> f64) -> Vec<Vec<f64>> {
+    let column = |(&index, pair): (&usize, &[Vec<f64>])| {
         let apart = apart(index);
-        columns[index] = pair[0].iter().zip(&pair[1]).map(|(plus, minus)| (plus - minus) / apart).collect();
-    }
-    columns
+        pair[0].iter().zip(&pair[1]).map(|(plus, minus)| (plus - minus) / apart).collect()
+    };
+    inputs.iter().zip(values.chunks_exact(2)).map(column).collect()
 }

@@ -362,12 +362,17 @@ impl Unit {
         rows.any(|(row, (one, other))| row.causality == Causality::Parameter && one != other)
     }
 
-    /// Derivatives of all variables by every input, one column per input, of the step since a point, or of the start.
+    /// Derivatives of all variables by some inputs, one column per input, of the step since a point, or of the start.
     ///
     /// # Errors
     /// If there are none.
-    pub fn derivatives(&self, before: Option<&MachineSnapshot>, played: &[bool]) -> Outcome<Vec<Vec<f64>>> {
-        derivatives::columns(self, before, &self.played(played))
+    pub fn derivatives(
+        &self,
+        before: Option<&MachineSnapshot>,
+        played: &[bool],
+        inputs: &[usize],
+    ) -> Outcome<Vec<Vec<f64>>> {
+        derivatives::columns(self, before, &self.played(played), inputs)
     }
 
     /// Tells what is simulated.

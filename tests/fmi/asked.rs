@@ -1,0 +1,59 @@
+//! Derivatives by the inputs that are asked for, whatever else was.
+
+use std::ptr;
+
+use roulement::fmi::v2::Status;
+
+use crate::fmi2_abi::*;
+use crate::system::run;
+
+const SHAFT: &str = include_str!("../../scenes/shafts/pinion.toml");
+
+/// Derivatives of the pinion's place and a bearing's force by inputs, each asked for alone.
+fn derivatives(package: &Package, c: Component, knowns: &[&str]) -> Vec<[f64; 2]> {
+    let unknowns = ["mesh.displacement.y", "left.inner.force.z"].map(|name| package.reference(name));
+    let of = |known: &&str| {
+        let (mut found, known) = ([0.0; 2], package.reference(known));
+        let status = unsafe {
+            fmi2GetDirectionalDerivative(c, unknowns.as_ptr(), 2, &known, 1, &1.0, found.as_mut_ptr())
+        };
+        assert_eq!(status, Status::Ok);
+        found
+    };
+    knowns.iter().map(of).collect()
+}
+
+#[test]
+fn invariant_a_derivative_does_not_depend_on_what_else_is_asked_for() {
+    let package = Package::of_system("asked", SHAFT);
+    let c = package.start();
+    let all = ["mesh.force.y", "mesh.moment.z", "left.friction", "mesh.force.z"];
+    // Nothing was asked for before the first point: one by one. At the second point, all that was asked for at the first comes together.
+    run(c, 0..2);
+    derivatives(&package, c, &all);
+    let mut saved = ptr::null_mut();
+    unsafe { assert_eq!(fmi2GetFMUstate(c, &mut saved), Status::Ok) };
+    run(c, 2..3);
+    let together = derivatives(&package, c, &all);
+    assert!(together.iter().flatten().all(|value| *value != 0.0), "{together:?}");
+    // From here on only two are asked for: the others are no longer expected, but are the same when they come.
+    let again = |knowns: &[&str]| {
+        unsafe { assert_eq!(fmi2SetFMUstate(c, saved), Status::Ok) };
+        run(c, 2..3);
+        derivatives(&package, c, knowns)
+    };
+    assert_eq!(again(&all[2..]), together[2..]);
+    assert_eq!(
+        again(&[all[0], all[3], all[0], all[1]]),
+        [together[0], together[3], together[0], together[1]]
+    );
+    // Another instance, which was asked for nothing before.
+    let fresh = package.start();
+    run(fresh, 0..3);
+    assert_eq!(derivatives(&package, fresh, &all[1..2]), together[1..2]);
+    unsafe {
+        fmi2FreeFMUstate(c, &mut saved);
+        fmi2FreeInstance(c);
+        fmi2FreeInstance(fresh);
+    }
+}
