@@ -6,11 +6,13 @@
 //! one of statistics.
 
 mod difference;
+mod method;
 mod refine;
 mod rounds;
 mod sample;
 
 pub use difference::Difference;
+pub use method::for_goal;
 pub use refine::{Compared, MOST_ROUNDS, Refined, finer, refine, twin_of_coarser};
 pub use rounds::{Judgement, Rounds, TWIN};
 pub use sample::{Course, Lengths, Run, Sample, sizes};

@@ -92,7 +92,9 @@ impl Rounds {
     pub fn push(&mut self, run: Run) {
         self.refinements += 1;
         let solver = run.solver;
-        let text = format!("max_step {}, tolerance {:.1e}", seconds(solver.max_step.0), solver.tolerance);
+        let method: &str = solver.method.into();
+        let text =
+            format!("{method}, max_step {}, tolerance {:.1e}", seconds(solver.max_step.0), solver.tolerance);
         if let Some(last) = self.runs.last() {
             self.differences.push(Difference::of(last, &run));
         }
