@@ -236,6 +236,7 @@ pub mod loads;
 pub mod model;
 pub mod numerics;
 pub mod prelude;
+pub mod quasi_static;
 pub mod scene;
 pub mod schema;
 pub mod simulation;

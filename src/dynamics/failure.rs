@@ -22,6 +22,9 @@ pub struct Worst {
 }
 
 impl Worst {
+    /// Of a machine all of whose bearings are without states.
+    pub const NOTHING: Self = Self { ball: 0, body: None };
+
     /// Ball and body of the largest norms, the first of equals; NaN counts as largest.
     pub fn of(balls: impl Iterator<Item = f64>, bodies: impl Iterator<Item = (Body, f64)>) -> Self {
         let worse = |norm: f64, than: f64| !than.is_nan() && (norm.is_nan() || norm > than);

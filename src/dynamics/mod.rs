@@ -55,6 +55,7 @@ use cage::CageTrial;
 pub use dense::StepBound;
 pub use failure::{FailureSite, Worst, failure_site};
 use group::Groups;
+pub use local_error::Allowed;
 use neighbours::NeighbourTrial;
 use spacing::SpacingTrial;
 

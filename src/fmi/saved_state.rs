@@ -9,7 +9,7 @@ use super::state::State;
 use crate::simulation::driven::MachineSnapshot;
 
 /// First bytes of a serialised state: what it is, and the version of its form.
-const MAGIC: &[u8; 8] = b"rlmtFM17";
+const MAGIC: &[u8; 8] = b"rlmtFM18";
 /// Bytes of the checksum.
 const CHECKSUM: usize = 32;
 

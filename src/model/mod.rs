@@ -108,6 +108,8 @@ pub struct Model {
     medium: Option<Medium>,
     /// Flexible supports of the races on their flanges.
     pub supports: PerRace<Option<Support>>,
+    /// Is it without states in the steps of a machine: its elements in balance wherever the rings are?
+    pub without_states: bool,
     /// Are condensed stiffness and damping reported?
     pub stiffness_outputs: bool,
     /// Time integration.
@@ -204,6 +206,7 @@ impl Model {
                 outer: outer_support.map(Support::from),
             },
             medium: scene.effects.ambient.section.as_ref().map(AmbientSection::medium),
+            without_states: false,
             stiffness_outputs: scene.effects.stiffness.on,
             solver: scene.solver,
         })

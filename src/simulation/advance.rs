@@ -6,7 +6,7 @@ use super::error::SimulationError;
 use super::inputs::Inputs;
 use super::outputs::Outputs;
 use super::script::{Script, script_motion};
-use super::system::{Played, Structures};
+use super::system::Played;
 use super::together::{Stopped, Together};
 use super::{Simulation, step_limits};
 use crate::dynamics::system::{
@@ -105,7 +105,10 @@ impl Together<'_> {
             for (bearing, script) in self.bearings.iter().zip(scripts) {
                 let own = script.shortest_period(&bearing.scene, time);
                 let period = own.into_iter().chain(of_structures).reduce(f64::min);
-                if let Some(limit) = step_limits::largest_step(&bearing.model, &bearing.state, period) {
+                if bearing.model.without_states {
+                    bearing.longest_of_elements(period).into_iter().for_each(|limit| control.cap(limit));
+                } else if let Some(limit) = step_limits::largest_step(&bearing.model, &bearing.state, period)
+                {
                     control.cap(limit);
                 }
             }
@@ -137,11 +140,19 @@ impl Together<'_> {
                     if let Some(structures) = &mut self.structures {
                         structures.reach(ends, h);
                     }
+                    self.rest_elements(&boundaries, h);
+                    self.bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
                     return self.check_step(&boundaries);
                 }
                 Err((index, failure)) => {
+                    self.bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
                     if !control.above_minimum() {
-                        return Err((index, self.bearings[index].too_small(failure, &boundaries[index])));
+                        let stepped = self.bearings.iter().enumerate();
+                        let mut stepped = stepped.filter(|(_, bearing)| !bearing.model.without_states);
+                        return Err(match stepped.nth(index) {
+                            Some((index, bearing)) => (index, bearing.too_small(failure, &boundaries[index])),
+                            None => (0, self.bearings[0].too_small_for_structures(failure)),
+                        });
                     }
                 }
             }
@@ -158,12 +169,15 @@ impl Together<'_> {
         let mut buffers = std::mem::take(&mut self.bearings[0].buffers);
         let structures = self.structures.as_deref();
         let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
-        let joined = structures.map_or(Joined::default(), Structures::joined);
+        let elements = structures.map_or(vec![], |all| all.element_steps(self.bearings, boundaries, step.0));
+        let joined = structures.map_or(Joined::default(), |all| all.joined(&elements));
         let of = |(bearing, boundary)| {
             let Simulation { model, state, workspace, .. }: &mut Simulation = bearing;
             Part { model, state, boundary, workspace }
         };
-        let mut parts: Vec<Part<'_>> = self.bearings.iter_mut().zip(boundaries).map(of).collect();
+        let stepped = self.bearings.iter_mut().zip(boundaries);
+        let stepped = stepped.filter(|(bearing, _)| !bearing.model.without_states);
+        let mut parts: Vec<Part<'_>> = stepped.map(of).collect();
         let tried = try_step(&mut parts, &steps, joined, step, control, &mut buffers);
         self.bearings[0].buffers = buffers;
         tried
@@ -188,6 +202,7 @@ impl Together<'_> {
         }
         let bearings = start.iter().zip(&*self.bearings).zip(boundaries);
         let bearings: Vec<Started<'_>> = bearings
+            .filter(|((_, bearing), _)| !bearing.model.without_states)
             .map(|((start, bearing), boundary)| Started {
                 model: &bearing.model,
                 start,
@@ -202,21 +217,38 @@ impl Together<'_> {
                 (beside.imposed(scripts, &loads, next), loads)
             })
             .collect();
-        let parts = perturbed.iter_mut().zip(&imposed).map(|(beside, (boundaries, loads))| Perturbed {
-            states: beside.bearings.iter_mut().map(|bearing| &mut bearing.state).collect(),
-            boundaries,
-            structures: beside.structures.as_deref().map_or(vec![], |all| all.steps(&all.states, loads)),
-        });
+        let stepped: Vec<bool> = self.bearings.iter().map(|bearing| !bearing.model.without_states).collect();
+        let own = |boundaries: &[Boundary]| -> Vec<Boundary> {
+            boundaries
+                .iter()
+                .zip(&stepped)
+                .filter(|(_, stepped)| **stepped)
+                .map(|(own, _)| own.clone())
+                .collect()
+        };
+        let of_parts: Vec<_> = imposed.iter().map(|(boundaries, _)| own(boundaries)).collect();
+        let parts = perturbed.iter_mut().zip(imposed.iter().zip(&of_parts)).map(
+            |(beside, ((_, loads), boundaries))| Perturbed {
+                states: (beside.bearings.iter_mut())
+                    .filter(|bearing| !bearing.model.without_states)
+                    .map(|bearing| &mut bearing.state)
+                    .collect(),
+                boundaries,
+                structures: beside.structures.as_deref().map_or(vec![], |all| all.steps(&all.states, loads)),
+            },
+        );
         let structures = self.structures.as_deref();
         let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
-        let joined = structures.map_or(Joined::default(), Structures::joined);
+        let elements = structures.map_or(vec![], |all| all.element_steps(self.bearings, boundaries, h));
+        let joined = structures.map_or(Joined::default(), |all| all.joined(&elements));
         let accepted = (h, &self.bearings[0].buffers.unknowns[..]);
         let ends = advance_perturbed(&bearings, &steps, joined, accepted, parts, aside)
             .ok_or((0, SimulationError::Singular(time)))?;
-        for (beside, ends) in perturbed.iter_mut().zip(ends) {
+        for ((beside, ends), (boundaries, _)) in perturbed.iter_mut().zip(ends).zip(&imposed) {
             if let Some(structures) = &mut beside.structures {
                 structures.reach(ends, h);
             }
+            beside.rest_elements(boundaries, h);
         }
         Ok(())
     }
@@ -315,6 +347,16 @@ impl Simulation {
                 script_motion(&self.scene, race, time, &now, input);
             }
         }
+    }
+
+    /// The same of a machine all of whose bearings are without states.
+    fn too_small_for_structures(&self, failure: StepFailure) -> SimulationError {
+        let cause = match failure {
+            StepFailure::Newton(..) => "Newton's method does not converge",
+            StepFailure::Error(_) => "the local error stays above solver.tolerance",
+        };
+        let (time, min_step) = (self.state.time, self.model.solver.min_step.0);
+        SimulationError::StepOfStructuresTooSmall { time, min_step, cause }
     }
 
     /// The step that was tried last failed, and cannot be any smaller.

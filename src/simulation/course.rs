@@ -4,11 +4,13 @@ use super::inputs::Inputs;
 use super::play::Scripted;
 use super::point::Point;
 use super::script::Script;
-use super::system::{Played, Structures};
+use super::system::Played;
 use super::together::{Stopped, Together};
 use super::{Simulation, SimulationError, conditions};
 use crate::dynamics::StepBound;
+use crate::dynamics::system::elements::ElementState;
 use crate::dynamics::system::{Joined, Stepped, within};
+use crate::forces::Contacts;
 use crate::model::link::LinkState;
 use crate::model::state::State;
 use crate::model::structure::StructureState;
@@ -42,6 +44,8 @@ struct Moment {
     structures: Vec<StructureState>,
     /// States of what links them.
     links: Vec<LinkState>,
+    /// States of the elements of bearings that have no others.
+    elements: Vec<ElementState>,
 }
 
 impl Course {
@@ -121,31 +125,43 @@ impl Together<'_> {
         if let Some(structures) = &mut self.structures {
             structures.states.clone_from(&start.structures);
             structures.link_states.clone_from(&start.links);
+            structures.element_states.clone_from(&start.elements);
         }
         self.set_bearing_inputs(course);
         let loads = self.loads(&course.played, time);
         let boundaries = self.imposed(&course.scripts, &loads, time);
         let ends = start.bearings.iter().zip(&end.bearings);
-        let stepped = self.bearings.iter().zip(ends).zip(boundaries);
+        let stepped = self.bearings.iter().zip(ends).zip(&boundaries);
         let mut stepped: Vec<_> = stepped
+            .filter(|((bearing, _), _)| !bearing.model.without_states)
             .map(|((bearing, (start, end)), boundary)| Stepped {
                 model: &bearing.model,
                 ends: [start, end],
-                boundary,
+                boundary: boundary.clone(),
             })
             .collect();
-        let structures = self.structures.as_deref();
-        let steps = structures.map_or(vec![], |all| all.steps(&start.structures, &loads));
-        let joined = structures.map_or(Joined::default(), Structures::joined);
         let spans = (time - start.time, end.time - start.time);
-        let (bearings, states) = within(&mut stepped, &steps, &end.structures, joined, spans);
-        drop((stepped, steps));
+        let structures = self.structures.as_deref();
+        let elements =
+            structures.map_or(vec![], |all| all.element_steps(self.bearings, &boundaries, spans.0));
+        let steps = structures.map_or(vec![], |all| all.steps(&start.structures, &loads));
+        let joined = structures.map_or(Joined::default(), |all| all.joined(&elements));
+        let (seen, states) = within(&mut stepped, &steps, &end.structures, joined, spans);
+        drop((stepped, steps, elements));
         if let Some(structures) = &mut self.structures {
             structures.reach(states, spans.0);
         }
-        let all = self.bearings.iter_mut().zip(bearings).zip(&course.scripts).zip(&course.inputs);
-        for (((bearing, seen), script), inputs) in all {
-            bearing.see(script, inputs, seen);
+        self.rest_elements(&boundaries, spans.0);
+        let mut seen = seen.into_iter();
+        let all = self.bearings.iter_mut().zip(&course.scripts).zip(&course.inputs);
+        for ((bearing, script), inputs) in all {
+            match bearing.model.without_states {
+                true => {
+                    bearing.show_inputs(script, inputs);
+                    bearing.reach(false);
+                }
+                false => seen.next().into_iter().for_each(|seen| bearing.see(script, inputs, seen)),
+            }
         }
         self.report();
         course.end = Some(end);
@@ -153,7 +169,7 @@ impl Together<'_> {
 
     pub(super) fn look_up(&mut self, course: &mut Course) {
         let time = self.time();
-        let Some(Moment { bearings, structures: states, links, .. }) = course.end.take() else {
+        let Some(Moment { bearings, structures: states, links, elements, .. }) = course.end.take() else {
             self.bearings.iter_mut().for_each(Simulation::begin_report);
             return;
         };
@@ -163,6 +179,7 @@ impl Together<'_> {
         }
         if let Some(structures) = &mut self.structures {
             (structures.states, structures.link_states) = (states, links);
+            structures.element_states = elements;
         }
         self.show(course);
     }
@@ -184,7 +201,8 @@ impl Together<'_> {
         let bearings = self.bearings.iter().map(Simulation::bound).collect();
         let structures = self.structures.as_ref().map_or(vec![], |all| all.states.clone());
         let links = self.structures.as_ref().map_or(vec![], |all| all.link_states.clone());
-        Moment { time: self.time(), bearings, structures, links }
+        let elements = self.structures.as_ref().map_or(vec![], |all| all.element_states.clone());
+        Moment { time: self.time(), bearings, structures, links, elements }
     }
 
     /// Shows where the last step has ended.
@@ -200,7 +218,11 @@ impl Together<'_> {
 impl Simulation {
     /// Where it is, and its contacts there.
     fn bound(&self) -> StepBound {
-        StepBound { state: self.state.clone(), contacts: self.contacts_of(&self.point).into_owned() }
+        let contacts = match self.model.without_states {
+            true => Contacts::from_parts(&self.model, vec![], vec![], [None; 2]),
+            false => self.contacts_of(&self.point).into_owned(),
+        };
+        StepBound { state: self.state.clone(), contacts }
     }
 
     /// From the inputs that steps begin with, those that they follow, and beside them what the script says of those that they do not need.

@@ -55,6 +55,19 @@ pub enum SimulationError {
         /// Remark about the oil, where it hardly flows.
         oil: Option<String>,
     },
+    /// The step size fell below its minimum where no bearing has states.
+    #[error(
+        "at {} s the step fell below solver.min_step = {} s: {cause}, of shafts and housings between bearings of level = \"equilibrium\"",
+        four(.time), four(.min_step)
+    )]
+    StepOfStructuresTooSmall {
+        /// \[s] time reached.
+        time: f64,
+        /// \[s] smallest step allowed.
+        min_step: f64,
+        /// Cause of the last failure.
+        cause: &'static str,
+    },
     /// A contact is deeper than Hertz's theory reaches.
     #[error(
         "at {} s ball {ball} is pressed into the {race} race by {approach:.3e} m: more than {MAX_APPROACH} of its \

@@ -85,7 +85,7 @@ impl Simulation {
 
     /// The state as it is becomes that of the last communication point; `stepped` if the last step with this workspace led to it.
     pub(super) fn reach(&mut self, stepped: bool) {
-        let stepped = stepped && self.workspace.has_contacts_of_state();
+        let stepped = stepped && !self.model.without_states && self.workspace.has_contacts_of_state();
         self.point = Point::new(conditions(&self.inputs, &self.state), stepped);
     }
 

@@ -106,7 +106,8 @@ impl Together<'_> {
     /// Refuses contacts of the step that was accepted last which no material takes, or where no groove is.
     pub fn check_contacts(&self) -> Result<(), Stopped> {
         let mut each = self.bearings.iter().enumerate();
-        each.try_for_each(|(index, bearing)| bearing.check_contacts().map_err(|why| (index, why)))
+        each.try_for_each(|(index, bearing)| bearing.check_contacts().map_err(|why| (index, why)))?;
+        self.check_elements()
     }
 
     /// Refuses a state that the models of creep and of linear structures do not hold for.

@@ -1,6 +1,7 @@
 //! The quasi-static solution.
 #![allow(clippy::unwrap_used)]
 
+mod elements;
 #[path = "../common/equilibria.rs"]
 mod equilibria;
 mod guess;

@@ -12,6 +12,7 @@ mod frame;
 mod hard;
 mod housing;
 mod hub;
+mod level;
 mod loads;
 mod mesh;
 mod motion;

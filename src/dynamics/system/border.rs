@@ -4,6 +4,7 @@
 //! number of bearings.
 
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6};
+use serde::{Deserialize, Serialize};
 
 use super::step::Joint;
 use super::structure::StructureTrial;
@@ -18,8 +19,18 @@ use crate::numerics::kept_lu::KeptLu;
 pub struct Border {
     matrix: DMatrix<f64>,
     lu: KeptLu,
+    /// \[s] step that the factors are of, which serve for others of that size; none where they are those of one step.
+    size: Option<f64>,
     /// Right-hand side, then solution.
     pub(super) right: DVector<f64>,
+}
+
+/// A matrix of the border that serves for several steps, and the size \[s] of these.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptBorder {
+    size: f64,
+    /// Column by column.
+    matrix: Vec<f64>,
 }
 
 impl Border {
@@ -34,10 +45,34 @@ impl Border {
         matrix
     }
 
-    /// Factorises the matrix that was assembled, and keeps it.
-    pub(super) fn factorise(&mut self, matrix: DMatrix<f64>) {
+    /// Factorises the matrix that was assembled, and keeps it: for steps of a size \[s], if one is given.
+    pub(super) fn factorise(&mut self, matrix: DMatrix<f64>, size: Option<f64>) {
         self.lu.factorise(&matrix);
         self.matrix = matrix;
+        self.size = size;
+    }
+
+    /// Does the matrix serve for steps of a size \[s]?
+    pub(super) fn serves(&self, size: f64) -> bool {
+        self.size == Some(size)
+    }
+
+    /// The matrix that serves for several steps, if one does.
+    pub fn kept(&self) -> Option<KeptBorder> {
+        self.size.map(|size| KeptBorder { size, matrix: self.matrix.as_slice().to_vec() })
+    }
+
+    /// Goes on with a matrix that was kept, or with none; false, with nothing changed, if it is none of so many rows.
+    pub fn restore(&mut self, kept: Option<&KeptBorder>, rows: usize) -> bool {
+        let fits = kept.is_none_or(|kept| kept.matrix.len() == rows * rows);
+        match kept {
+            Some(kept) if fits => {
+                self.factorise(DMatrix::from_column_slice(rows, rows, &kept.matrix), Some(kept.size));
+            }
+            None => self.size = None,
+            Some(_) => {}
+        }
+        fits
     }
 
     /// Solves in place for the right-hand side; false if the matrix is singular or the solution is not finite.

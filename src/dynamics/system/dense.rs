@@ -49,6 +49,10 @@ pub fn within(
             trials[end.structure].add_link(end, &(force * link::sign(index)));
         }
     }
+    for element in joined.elements {
+        let seen = element.see(&trials, structures);
+        element.add(&seen, &element.forces(&seen), &mut trials);
+    }
     let settled = trials.into_iter().zip(structures).map(|(trial, one)| {
         let state = trial.settled(one.model, one.load);
         finished(one, state, part)

@@ -1,7 +1,8 @@
 //! One implicit step of bearings together with the structures that carry their races: of a bearing alone, of several on a shaft.
 
-mod border;
+pub mod border;
 mod dense;
+pub mod elements;
 mod sensitivity;
 mod step;
 mod structure;
@@ -18,6 +19,7 @@ use crate::numerics::newton::{self, NewtonBuffers, NewtonFailure, NewtonWork, Pa
 use crate::numerics::size::larger;
 use crate::numerics::step_control::StepControl;
 use border::Border;
+pub use border::KeptBorder;
 pub use dense::{Stepped, within};
 pub use sensitivity::{Perturbed, Started, advance_perturbed};
 pub use step::{Joined, Joint, StructureStep, SystemStep};
@@ -41,7 +43,8 @@ pub struct StepBuffers {
     /// Unknowns of the last step.
     pub unknowns: Vec<f64>,
     newton: NewtonBuffers,
-    border: Border,
+    /// Matrix of the structures.
+    pub border: Border,
     stages: Stages,
     starts: Starts,
 }
@@ -55,13 +58,14 @@ pub struct StageBounds {
     pub loads: Vec<StructureLoad>,
 }
 
-/// Tries one step of `h` \[s] of bearings and the structures that carry their races; a bearing alone has none. `before_end` has the bounds of the
+/// Tries one step of `h` \[s] of bearings and the structures that carry their races; a bearing alone has none, and of bearings without states no part
+/// is among them. `before_end` has the bounds of the
 /// stages before the last, of which HHT has none. On success states of bearings
 /// are the new ones, and those of the structures are returned; otherwise only statistics, step control, kept matrices and differences to
 /// the table have changed.
 ///
 /// # Errors
-/// The index of the bearing where the residual or the local error is largest, and what failed; the step control has then been told.
+/// The index among the parts of the bearing where the residual or the local error is largest, and what failed; the step control has then been told.
 // A function of its own in programs, too: scripts/step-instructions counts what it takes.
 #[inline(never)]
 pub fn try_step(

@@ -6,7 +6,7 @@
 //! the step itself. What is left is of second order, and even: it cancels between two perturbations of opposite sign.
 
 use super::border::Border;
-use super::step::{Joined, StructureStep, SystemStep};
+use super::step::{DEFAULT_ALPHA, Joined, StructureStep, SystemStep};
 use super::{BearingStep, finished};
 use crate::dynamics::accept::accept;
 use crate::dynamics::{Boundary, Workspace};
@@ -52,7 +52,7 @@ pub fn advance_perturbed<'a>(
     for (own, bearing) in aside.iter_mut().zip(bearings) {
         own.list_those_of(bearing.accepted);
     }
-    let step = HhtStep::new(bearings.first()?.model.solver.alpha_f, h);
+    let step = HhtStep::new(bearings.first().map_or(DEFAULT_ALPHA, |of| of.model.solver.alpha_f), h);
     let steps = bearings.iter().zip(aside.iter_mut());
     let steps: Vec<_> = steps
         .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, step, workspace))

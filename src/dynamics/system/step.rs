@@ -8,9 +8,10 @@ use super::super::accept::StepEnd;
 use super::super::equations::BearingStep;
 use super::super::local_error::Allowed;
 use super::super::matrix::prepare_correction;
-use super::super::{StepFailure, Workspace};
+use super::super::{StepFailure, Workspace, Worst};
 use super::Part;
 use super::border::{Border, CarriedRace};
+use super::elements::{ElementStep, OnRaces, Seen};
 use super::structure::{Seat, StructureLoad, StructureTrial};
 use crate::dynamics::stages::{Stage, Stages};
 use crate::model::bodies::Race;
@@ -20,11 +21,11 @@ use crate::model::structure::{Structure, StructureState};
 use crate::numerics::esdirk;
 use crate::numerics::given::take_out;
 use crate::numerics::hht::HhtStep;
-use crate::numerics::newton::{Equations, NewtonFailure};
+use crate::numerics::newton::{Equations, NewtonFailure, REFACTOR_CONTRACTION};
 use crate::numerics::size::{larger, largest};
 
-/// [-] damping parameter of a system without bearings.
-const DEFAULT_ALPHA: f64 = 0.05;
+/// [-] damping parameter of a system all of whose bearings are without states, where they do not say so.
+pub(super) const DEFAULT_ALPHA: f64 = 0.05;
 
 /// A race of a bearing on a seat of a structure.
 #[derive(Clone, Debug)]
@@ -46,6 +47,8 @@ pub struct Joined<'a> {
     pub joints: &'a [Joint],
     /// Links.
     pub links: &'a [Link],
+    /// Bearings without states.
+    pub elements: &'a [ElementStep<'a>],
 }
 
 /// A structure at the start of a step, and what acts on it.
@@ -83,8 +86,12 @@ pub struct SystemStep<'a> {
     border: &'a mut Border,
     /// How often the matrices of the bearings whose rows the border has were assembled; none before it has some.
     assembled: Option<u64>,
+    /// How often a new tangent was asked for, which bearings without states do not count.
+    asked: u64,
     /// [-] residual of each bearing over its tolerance.
     norms: Vec<f64>,
+    /// Bearings without states where the structures are.
+    seen: Vec<(Seen, OnRaces)>,
     /// Carried races of each bearing.
     carried: Vec<Vec<CarriedRace<'a>>>,
 }
@@ -141,7 +148,9 @@ impl<'a> SystemStep<'a> {
             held: vec![],
             border,
             assembled: None,
+            asked: 0,
             norms: vec![],
+            seen: vec![],
             carried: vec![],
         };
         if equations.alone().is_none() {
@@ -260,12 +269,19 @@ impl<'a> SystemStep<'a> {
                 self.trials[end.structure].add_link(end, &(force * link::sign(index)));
             }
         }
+        for (element, (seen, on)) in self.joined.elements.iter().zip(&self.seen) {
+            tolerance = tolerance.min(element.tolerance());
+            element.add(seen, on, &mut self.trials);
+        }
         let mut norm = 0.0;
         for (index, (one, trial)) in self.structures.iter().zip(&mut self.trials).enumerate() {
             trial.assemble(one.model, one.start, one.load, &self.step);
             let forces = trial.residual.component_div(one.scales);
             // All its races leave something in it: without this, each of many would be held to a tighter tolerance than one of a pair.
-            let races = self.joined.joints.iter().filter(|joint| joint.structure == index).count();
+            let joints = self.joined.joints.iter().filter(|joint| joint.structure == index).count();
+            let elements =
+                self.joined.elements.iter().flat_map(|element| element.joint.seats.iter().flatten());
+            let races = joints + elements.filter(|(structure, _)| *structure == index).count();
             let tolerance = tolerance * f64::max(0.5 * races as f64, 1.0);
             norm = larger(norm, largest(forces.iter()) / tolerance);
         }
@@ -313,6 +329,9 @@ impl<'a> SystemStep<'a> {
                 }
             }
         }
+        for (element, (seen, on)) in self.joined.elements.iter().zip(&self.seen) {
+            element.add_tangent((seen, on), &self.trials, &self.step, &self.rows, &mut matrix);
+        }
         for (step, carried) in self.bearings.iter().zip(&self.carried) {
             for rows in carried {
                 carried
@@ -321,19 +340,22 @@ impl<'a> SystemStep<'a> {
             }
         }
         take_out(&mut matrix, self.held.iter().copied(), 1.0);
-        self.border.factorise(matrix);
+        // Bearings with states renew theirs step by step.
+        let size = self.bearings.is_empty().then_some(self.step.h);
+        self.border.factorise(matrix, size);
     }
 
     /// Where the residual is largest after Newton's method gave up.
     pub fn unsolved(&self, failure: NewtonFailure) -> (usize, StepFailure) {
         let index = index_of_largest(self.norms.iter().copied());
-        (index, StepFailure::Newton(failure, self.bearings[index].worst_residual()))
+        let worst = self.bearings.get(index).map_or(Worst::NOTHING, BearingStep::worst_residual);
+        (index, StepFailure::Newton(failure, worst))
     }
 
     /// Where the local error is largest in a step that is refused for it.
     pub fn too_inaccurate(&self) -> (usize, StepFailure) {
         let index = index_of_largest(self.bearings.iter().map(BearingStep::local_error));
-        (index, StepFailure::Error(self.bearings[index].worst_error()))
+        (index, StepFailure::Error(self.bearings.get(index).map_or(Worst::NOTHING, BearingStep::worst_error)))
     }
 
     /// The ends of a solved step.
@@ -360,7 +382,8 @@ impl<'a> SystemStep<'a> {
     /// [-] local error over its tolerance: the largest of all bearings and structures, which are in these states before the step of `h` \[s].
     pub fn local_error(&self, before: &[StructureStep<'_>], (h, stages): (f64, Option<&Stages>)) -> f64 {
         let bearings = self.bearings.iter().map(BearingStep::local_error);
-        let allowed = self.bearings.iter().map(BearingStep::allowed).reduce(Allowed::and);
+        let of_elements = self.joined.elements.iter().map(|element| element.allowed);
+        let allowed = self.bearings.iter().map(BearingStep::allowed).chain(of_elements).reduce(Allowed::and);
         let structures = before.iter().zip(&self.trials).enumerate().map(|(index, (one, trial))| {
             let mut change = &trial.end.accelerations - &one.start.accelerations;
             one.model.held.iter().for_each(|k| change[*k] = 0.0);
@@ -378,7 +401,7 @@ impl<'a> SystemStep<'a> {
                 }
             };
             let force = || [(&one.model.mass * &change).component_div(one.scales).amax()];
-            // A system without bearings has no tolerance.
+            // A system has a bearing at least.
             allowed.map_or(0.0, |allowed| allowed.square([error * error], force).sqrt())
         });
         bearings.chain(structures).fold(0.0, larger)
@@ -402,6 +425,13 @@ impl Equations for SystemStep<'_> {
             trial.move_to(one.model, own, one.start, &self.step, one.load);
         }
         self.carry_races();
+        self.seen.clear();
+        for element in self.joined.elements {
+            let seen = element.see(&self.trials, self.structures);
+            let on = element.forces(&seen);
+            self.seen.push((seen, on));
+        }
+        self.asked += u64::from(with_tangent);
         self.norms.clear();
         for (index, step) in self.bearings.iter_mut().enumerate() {
             let own = &unknowns[self.first[index]..self.first[index + 1]];
@@ -412,7 +442,10 @@ impl Equations for SystemStep<'_> {
     }
 
     fn has_tangent(&self) -> bool {
-        self.bearings.iter().all(Equations::has_tangent)
+        match self.bearings.is_empty() {
+            true => self.border.serves(self.step.h),
+            false => self.bearings.iter().all(Equations::has_tangent),
+        }
     }
 
     fn correction(&mut self, correction: &mut [f64]) -> bool {
@@ -422,8 +455,12 @@ impl Equations for SystemStep<'_> {
         prepare_correction(&mut self.bearings);
         // Balls that were brought back press differently.
         self.assemble_structures();
-        let assembled = Some(self.bearings.iter().map(|step| step.assembled).sum());
-        if self.assembled != assembled {
+        let assembled = match self.bearings.is_empty() {
+            true => Some(self.asked),
+            false => Some(self.bearings.iter().map(|step| step.assembled).sum()),
+        };
+        let served = self.asked == 0 && self.bearings.is_empty() && self.border.serves(self.step.h);
+        if self.assembled != assembled && !served {
             self.factorise();
             self.assembled = assembled;
         }
@@ -456,6 +493,6 @@ impl Equations for SystemStep<'_> {
 
     fn refactor_contraction(&self) -> f64 {
         let contraction = |step: &BearingStep<'_>| step.model.solver.matrix_reuse;
-        self.bearings.iter().map(contraction).fold(1.0, f64::min)
+        self.bearings.iter().map(contraction).reduce(f64::min).unwrap_or(REFACTOR_CONTRACTION)
     }
 }

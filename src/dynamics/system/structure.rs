@@ -76,6 +76,11 @@ impl Seat {
         &self.tilt
     }
 
+    /// Place and angles of the race in its bearing's frame by these coordinates.
+    pub fn map(&self) -> &Map {
+        &self.map
+    }
+
     /// Coordinates of the structure that move it.
     pub fn coordinates(&self) -> &[usize] {
         &self.coordinates

@@ -8,11 +8,12 @@ use toml::{Table, Value};
 use super::spring::SceneSpring;
 use super::{MountedScene, SystemLoad};
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
-use crate::scene::{Scene, SceneError};
+use crate::effects::defects::On;
+use crate::scene::{Drive, Level, Scene, SceneError};
 use crate::schema::units::Acceleration;
 use crate::schema::{
-    AxialSeat, Components, HousingSection, Mounting, MountingDirection, ShaftSection, StiffnessSection,
-    explain, regular,
+    AxialSeat, Components, HousingSection, Method, Mounting, MountingDirection, ShaftSection,
+    StiffnessSection, explain, regular,
 };
 
 /// A bearing as it is written.
@@ -25,6 +26,9 @@ pub struct WrittenBearing {
     pub scene: Option<Value>,
     /// Its designation in the catalogue, such as 7206 B.
     pub catalogue: Option<String>,
+    /// Level of its model: its motion in time, or balls in balance at every place of its rings, without states.
+    #[serde(default)]
+    pub level: Level,
     /// Its stiffness, in place of a scene: springs instead of balls.
     pub stiffness: Option<StiffnessSection>,
     /// Name of the shaft that it sits on; needed where there are several.
@@ -76,7 +80,7 @@ impl WrittenBearing {
     /// # Errors
     /// With its name and what is wrong.
     pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
-        let Self { name, scene, catalogue, shaft, mounting, set, .. } = self;
+        let Self { name, scene, catalogue, level, shaft, mounting, set, .. } = self;
         // That there is such a shaft was checked.
         let named =
             |name: &Option<String>| given.shafts.iter().position(|(own, _)| name.as_ref() == Some(own));
@@ -113,6 +117,10 @@ impl WrittenBearing {
         let is_under_wrench = drive_of_outer(&set).or(drive_of_outer(&table)) == Some("wrench");
         check_changes(&set, is_under_wrench).map_err(inside)?;
         merge(&mut table, set);
+        if level == Level::Equilibrium && has_ideal_cage(&table) {
+            // At this level all cages are.
+            leave_balls_free(&mut table);
+        }
         if mounting.seats_outer_ring() {
             seat_outer_ring(&mut table, &mounting, estimated_mass).map_err(inside)?;
         }
@@ -129,8 +137,32 @@ impl WrittenBearing {
         if mounting.seats_outer_ring() && scene.effects.cage.is_ideal() {
             return Err(inside(SceneError::conflict("effects.cage", IDEAL_CAGE_NEEDS)));
         }
-        Ok(MountedScene { name, shaft, outer_shaft, mounting, scene })
+        if level == Level::Equilibrium {
+            without_states(&scene).map_err(inside)?;
+        }
+        Ok(MountedScene { name, shaft, outer_shaft, mounting, level, scene })
     }
+}
+
+/// Refuses what needs states in a bearing that has none.
+fn without_states(scene: &Scene) -> Result<(), SceneError> {
+    let effects = &scene.effects;
+    let waves = [true, false].into_iter().any(|inner| effects.form.of(inner).is_some());
+    let damaged = [On::Inner, On::Outer].into_iter().any(|on| !effects.defects.on(on, 0.0).is_empty());
+    let refused = [
+        (scene.outer.drive == Drive::Wrench, "outer.drive = \"wrench\""),
+        (effects.support.sections.iter().any(Option::is_some), "outer.support"),
+        (waves || !effects.form.larger_radii().is_empty(), "form"),
+        (damaged || !effects.defects.on_balls().is_empty(), "defect"),
+        (effects.cage.section.is_some(), "effects.cage"),
+        (effects.heat_balance.section.is_some(), "heat_balance"),
+        (effects.heat.on, "effects.heat_outputs"),
+        (effects.means.on, "effects.mean_outputs"),
+        (scene.solver.method != Method::Hht, "solver.method"),
+    ];
+    let why = "is for a bearing with states: one of level = \"equilibrium\" has balls in balance wherever its rings are; take it out, or give \
+               level = \"dynamic\"";
+    refused.into_iter().find(|(is, _)| *is).map_or(Ok(()), |(_, key)| Err(SceneError::conflict(key, why)))
 }
 
 /// Drive of the outer race, where a table gives it.
@@ -181,6 +213,12 @@ fn leave_balls_free(table: &mut Table) {
     if let Some(effects) = table.get_mut("effects").and_then(Value::as_table_mut) {
         effects.remove("cage");
     }
+}
+
+/// Does an ideal cage keep the balls apart?
+fn has_ideal_cage(table: &Table) -> bool {
+    let cage = table.get("effects").and_then(|effects| effects.get("cage"));
+    cage.and_then(Value::as_str) == Some("ideal")
 }
 
 /// Sets keys of a table, section by section.

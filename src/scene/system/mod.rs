@@ -25,7 +25,7 @@ use serde::Deserialize;
 use spring::SceneSpring;
 use toml::{Table, Value};
 
-use super::{FrameMotion, Ranges, Scene, SceneError};
+use super::{FrameMotion, Level, Ranges, Scene, SceneError};
 use crate::catalogue;
 use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
@@ -77,6 +77,8 @@ pub struct MountedScene {
     pub outer_shaft: Option<usize>,
     /// Where it sits.
     pub mounting: Mounting,
+    /// Has it states in the steps of the machine, or are its balls in balance at every place of its rings?
+    pub level: Level,
     /// The bearing by itself, in axes of its own; its inner race is moved by the shaft.
     pub scene: Scene,
 }

@@ -3,6 +3,7 @@
 mod advance;
 mod assembly;
 mod critical_speeds;
+mod elements;
 mod equilibrium;
 mod inputs;
 mod linear;

@@ -6,6 +6,8 @@ use super::super::play::Scripted;
 use super::super::{Simulation, Snapshot};
 use super::System;
 use super::inputs::{ShaftInputs, ShaftPaths};
+use crate::dynamics::system::KeptBorder;
+use crate::dynamics::system::elements::ElementState;
 use crate::model::link::LinkState;
 use crate::model::structure::StructureState;
 
@@ -18,6 +20,10 @@ pub struct SystemSnapshot {
     states: Vec<StructureState>,
     /// States of what links them.
     links: Vec<LinkState>,
+    /// States of the elements of bearings that have no others.
+    elements: Vec<ElementState>,
+    /// Matrix of steps of a machine all of whose bearings are without states, if one is kept.
+    border: Option<KeptBorder>,
     bearings: Vec<Snapshot>,
 }
 
@@ -36,17 +42,21 @@ impl System {
             paths: self.structures.paths.clone(),
             states: self.structures.states.clone(),
             links: self.structures.link_states.clone(),
+            elements: self.structures.element_states.clone(),
+            border: self.bearings[0].buffers.border.kept(),
             bearings: self.bearings.iter().map(Simulation::snapshot).collect(),
         }
     }
 
     /// That, in the memory of an earlier one of this system.
     pub fn snapshot_into(&self, snapshot: &mut SystemSnapshot) {
-        let SystemSnapshot { inputs, paths, states, links, bearings } = snapshot;
+        let SystemSnapshot { inputs, paths, states, links, elements, border, bearings } = snapshot;
+        *border = self.bearings[0].buffers.border.kept();
         inputs.clone_from(&self.structures.inputs);
         paths.clone_from(&self.structures.paths);
         states.clone_from(&self.structures.states);
         links.clone_from(&self.structures.link_states);
+        elements.clone_from(&self.structures.element_states);
         bearings.truncate(self.bearings.len());
         let (old, new) = self.bearings.split_at(bearings.len());
         old.iter().zip(&mut *bearings).for_each(|(bearing, snapshot)| bearing.snapshot_into(snapshot));
@@ -61,6 +71,9 @@ impl System {
             && snapshot.inputs.fits(&self.structures.inputs)
             && snapshot.paths.fits(&self.structures.inputs)
             && snapshot.links.len() == self.structures.link_states.len()
+            && snapshot.elements.len() == self.structures.element_states.len()
+            && (snapshot.elements.iter().zip(&self.structures.element_states))
+                .all(|(one, own)| one.rested.len() == own.rested.len())
             && snapshot.states.len() == self.structures.states.len()
             && self
                 .structures
@@ -69,11 +82,14 @@ impl System {
                 .zip(&snapshot.states)
                 .all(|(one, state)| state.fits(one.structure.size(), one.structure.held.len()))
             && snapshot.bearings.iter().all(|bearing| bearing.time() == snapshot.time());
+        let rows = self.structures.carriers.iter().map(|one| one.structure.size()).sum();
+        let same = same && self.bearings[0].buffers.border.restore(snapshot.border.as_ref(), rows);
         if same {
             self.structures.inputs.clone_from(&snapshot.inputs);
             self.structures.paths.clone_from(&snapshot.paths);
             self.structures.states.clone_from(&snapshot.states);
             self.structures.link_states.clone_from(&snapshot.links);
+            self.structures.element_states.clone_from(&snapshot.elements);
             let restored = self.bearings.iter_mut().zip(&snapshot.bearings);
             let all = restored.fold(true, |all, (bearing, snapshot)| bearing.restore(snapshot) && all);
             debug_assert!(all, "they were looked at");

@@ -7,10 +7,11 @@ use super::super::inputs::Inputs;
 use super::super::play::Scripted;
 use super::super::{Simulation, SimulationError};
 use super::assembly::Assembly;
+use super::elements;
 use super::inputs::ShaftInputs;
 use super::{Structures, System, SystemError, SystemOutputs};
 use crate::analysis::auto;
-use crate::dynamics::system::{Joined, Joint, StructureLoad, StructureTrial};
+use crate::dynamics::system::{Joined, Joint, StructureStep, StructureTrial};
 use crate::model::link;
 use crate::model::structure::{Carrier, Spin, StructureState};
 use crate::numerics::step_control::StepControl;
@@ -63,8 +64,27 @@ impl System {
             Arc::make_mut(&mut bearings[joint.bearing].model).carry(joint.race);
         }
         bearings.iter_mut().for_each(Simulation::settle);
-        let joined = Joined { joints: &joints, links: &links };
-        let states = started(&carriers, &states, &loads, joined, &bearings);
+        let (elements, stepped) = elements::joints(scene, &joints, &mut bearings);
+        let element_states = elements::started(&elements, &carriers, &states, &mut bearings);
+        let steps: Vec<_> = carriers
+            .iter()
+            .zip(&scales)
+            .zip(states.iter().zip(&loads))
+            .map(|((carrier, scales), (start, load))| StructureStep {
+                model: &carrier.structure,
+                scales,
+                start,
+                load,
+            })
+            .collect();
+        let boundaries: Vec<_> =
+            bearings.iter().map(|bearing| bearing.boundary(bearing.state.time)).collect();
+        let of_elements = elements::steps(&elements, &element_states, &bearings, &boundaries, 0.0);
+        let joined = Joined { joints: &stepped, links: &links, elements: &of_elements };
+        let of_parts: Vec<&Simulation> =
+            bearings.iter().filter(|bearing| !bearing.model.without_states).collect();
+        let states = started(&carriers, &steps, joined, &of_parts);
+        drop(of_elements);
         let link_states = links.iter().map(|link| link.started(|structure| &states[structure])).collect();
         let solver = scene.solver();
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
@@ -74,6 +94,9 @@ impl System {
             carriers: Arc::new(carriers),
             scales: Arc::new(scales),
             joints: Arc::new(joints),
+            stepped: Arc::new(stepped),
+            elements: Arc::new(elements),
+            element_states,
             links: Arc::new(links),
             link_states,
             inputs,
@@ -100,12 +123,11 @@ pub(super) fn found_out(scene: &SystemScene) -> Result<Cow<'_, SystemScene>, Sys
 /// States of the structures where a run starts, with accelerations under what the bearings do.
 fn started(
     carriers: &[Carrier],
-    states: &[StructureState],
-    loads: &[StructureLoad],
+    structures: &[StructureStep<'_>],
     joined: Joined<'_>,
-    bearings: &[Simulation],
+    bearings: &[&Simulation],
 ) -> Vec<StructureState> {
-    let mut trials: Vec<_> = states.iter().map(StructureTrial::new).collect();
+    let mut trials: Vec<_> = structures.iter().map(|one| StructureTrial::new(one.start)).collect();
     for Joint { bearing, race, structure, seat } in joined.joints {
         let motion = trials[*structure].seat(&carriers[*structure].structure, seat);
         trials[*structure].add(seat, &motion, &bearings[*bearing].state.race(*race).bearing_wrench);
@@ -117,6 +139,10 @@ fn started(
             trials[end.structure].add_link(end, &(force * link::sign(index)));
         }
     }
-    let all = trials.into_iter().zip(carriers.iter().zip(loads));
-    all.map(|(trial, (carrier, load))| trial.started(&carrier.structure, load)).collect()
+    for element in joined.elements {
+        let seen = element.see(&trials, structures);
+        element.add(&seen, &element.forces(&seen), &mut trials);
+    }
+    let all = trials.into_iter().zip(structures);
+    all.map(|(trial, one)| trial.started(one.model, one.load)).collect()
 }

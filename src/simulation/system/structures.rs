@@ -7,6 +7,7 @@ use nalgebra::DVector;
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
 use super::{LinkOutputs, SystemOutputs, loads};
 use crate::dynamics::Boundary;
+use crate::dynamics::system::elements::{ElementJoint, ElementState, ElementStep};
 use crate::dynamics::system::{Joined, Joint, StructureLoad, StructureStep};
 use crate::model::bodies::Race;
 use crate::model::link::{Link, LinkState};
@@ -24,6 +25,12 @@ pub struct Structures {
     pub scales: Arc<Vec<DVector<f64>>>,
     /// Races on their seats.
     pub joints: Arc<Vec<Joint>>,
+    /// Those of the bearings that have states, which are counted without the others.
+    pub stepped: Arc<Vec<Joint>>,
+    /// Bearings without states between them.
+    pub elements: Arc<Vec<ElementJoint>>,
+    /// States of their elements.
+    pub element_states: Vec<ElementState>,
     /// Links between them: meshes, then bearings by their stiffness.
     pub links: Arc<Vec<Link>>,
     /// States of these.
@@ -65,8 +72,8 @@ impl Structures {
     }
 
     /// Joints between them.
-    pub fn joined(&self) -> Joined<'_> {
-        Joined { joints: &self.joints, links: &self.links }
+    pub fn joined<'a>(&'a self, elements: &'a [ElementStep<'a>]) -> Joined<'a> {
+        Joined { joints: &self.stepped, links: &self.links, elements }
     }
 
     /// Takes the states that a step of `h` \[s] has led to.

@@ -1,0 +1,312 @@
+//! Bearings without states between structures: their elements are in balance at every place of the rings ([`crate::quasi_static`]).
+
+use nalgebra::{DMatrix, Dyn, Matrix3, Matrix6, OMatrix, U6, UnitQuaternion, Vector3, Vector6};
+use serde::{Deserialize, Serialize};
+
+use super::step::StructureStep;
+use super::structure::{Seat, StructureTrial};
+use crate::dynamics::Allowed;
+use crate::dynamics::carried::SeatMotion;
+use crate::model::bodies::{PerRace, Race};
+use crate::model::state::stack;
+use crate::model::structure::{Carrier, StructureState, Turning};
+use crate::model::{Conditions, Model};
+use crate::numerics::hht::HhtStep;
+use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::numerics::tilt;
+use crate::quasi_static::bearing::{Balls, Forces, Rested, RingMotion};
+use crate::quasi_static::rings::Placed;
+
+/// [-] share of a load that a residual may leave.
+const SHARE_OF_LOAD: f64 = 1e-9;
+/// \[N] residual that is small enough for any bearing.
+const FORCE_TOLERANCE: f64 = 1e-6;
+
+/// A bearing without states, between its seats.
+#[derive(Clone, Debug)]
+pub struct ElementJoint {
+    /// Index of the bearing.
+    pub bearing: usize,
+    /// Structure and seat of each race that a structure carries.
+    pub seats: PerRace<Option<(usize, Seat)>>,
+    /// [-] speed of the cage against the outer race over that of the inner race against it.
+    pub ratio: f64,
+    /// Damping of its contacts, by creep too, where its balls roll at the start.
+    pub damping: Option<Damping>,
+}
+
+/// Damping of contacts that roll.
+#[derive(Clone, Copy, Debug)]
+pub struct Damping {
+    /// Force and moment on the inner race against its twist as seen from the outer one.
+    pub matrix: Matrix6<f64>,
+    /// \[N] sum of the loads on the inner race that it is of.
+    pub load: f64,
+    /// [rad/s] speed of the cage against the outer race that it is of.
+    pub rate: f64,
+}
+
+impl Damping {
+    /// As it is in another state: in proportion to the loads, and as creep is a slip over a speed, to its inverse, but no more than it was.
+    fn at(&self, state: &ElementState, rate: f64) -> Matrix6<f64> {
+        let load: f64 = state.rested.iter().map(|ball| ball.loads[0]).sum();
+        self.matrix * ((load / self.load).min(1.0) * (self.rate / rate).abs().min(1.0))
+    }
+}
+
+/// State of a bearing without states: where its elements are, which is where they are looked for next.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ElementState {
+    /// \[rad] turn of the elements since the start.
+    pub turn: f64,
+    /// [rad/s] its rate.
+    pub rate: f64,
+    /// The elements.
+    pub rested: Vec<Rested>,
+    /// \[N] largest load.
+    pub largest: f64,
+}
+
+/// A bearing without states in a step.
+#[derive(Debug)]
+pub struct ElementStep<'a> {
+    /// Between what.
+    pub joint: &'a ElementJoint,
+    /// State at the start.
+    pub start: &'a ElementState,
+    /// Its elements.
+    pub balls: Balls,
+    /// Given motion of races that nothing carries.
+    pub given: &'a PerRace<(Pose, Twist)>,
+    /// Damping of contacts that roll, by the twist of the inner race as seen from the outer one.
+    pub damping: Option<Matrix6<f64>>,
+    /// \[s] time since the start.
+    pub elapsed: f64,
+    /// \[m] length of a local error that a step may make, and \[N] change of an inertia force that need not be followed.
+    pub allowed: Allowed,
+}
+
+/// Both races in a trial.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    seats: PerRace<Option<SeatMotion>>,
+    /// Poses and twists.
+    pub races: PerRace<(Pose, Twist)>,
+    /// The outer race's axes, without its spin.
+    frame: UnitQuaternion<f64>,
+    /// The inner race from there.
+    pub motion: RingMotion,
+}
+
+/// What the elements do to both races.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OnRaces {
+    /// Force and moment on each, about its origin, world axes.
+    pub wrenches: PerRace<Wrench>,
+    /// \[J] elastic energy.
+    pub elastic: f64,
+    /// \[W] lost to damping.
+    pub damped: f64,
+}
+
+impl<'a> ElementStep<'a> {
+    /// A step of `h` \[s] of these balls.
+    pub fn new(
+        joint: &'a ElementJoint,
+        start: &'a ElementState,
+        balls: Balls,
+        given: &'a PerRace<(Pose, Twist)>,
+        h: f64,
+        allowed: Allowed,
+    ) -> Self {
+        let damping = joint.damping.as_ref().map(|damping| damping.at(start, start.rate));
+        Self { joint, start, balls, given, damping, elapsed: h, allowed }
+    }
+
+    /// \[N] residual that is small enough.
+    pub fn tolerance(&self) -> f64 {
+        FORCE_TOLERANCE.max(SHARE_OF_LOAD * self.start.largest)
+    }
+
+    /// The races where the structures are.
+    pub fn see(&self, trials: &[StructureTrial], structures: &[StructureStep<'_>]) -> Seen {
+        let seats = PerRace::new(|race| {
+            let (structure, seat) = self.joint.seats[race].as_ref()?;
+            Some(trials[*structure].seat(structures[*structure].model, seat))
+        });
+        self.seen(seats)
+    }
+
+    /// The races where structures are in these states.
+    pub fn seen_in(&self, carriers: &[Carrier], states: &[StructureState]) -> Seen {
+        let seats = PerRace::new(|race| {
+            let (structure, seat) = self.joint.seats[race].as_ref()?;
+            let StructureState { coordinates, rates, accelerations, spin, .. } = &states[*structure];
+            let given = (carriers[*structure].structure.turning == Turning::Given).then_some(spin);
+            Some(seat.motion([coordinates, rates, accelerations], given))
+        });
+        self.seen(seats)
+    }
+
+    fn seen(&self, seats: PerRace<Option<SeatMotion>>) -> Seen {
+        let races = PerRace::new(|race| {
+            seats[race].as_ref().map_or(self.given[race], |seat: &SeatMotion| (seat.pose(), seat.twist()))
+        });
+        let axes = PerRace::new(|race| {
+            let (pose, _): &(Pose, Twist) = &races[race];
+            pose.orientation * Vector3::x()
+        });
+        let frame = UnitQuaternion::new(tilt::of_axis(&races.outer.0.orientation));
+        let [inner, outer] = [&races.inner, &races.outer];
+        let speeds = PerRace::new(|race| {
+            let (_, twist): &(Pose, Twist) = &races[race];
+            twist.angular_velocity.dot(&axes[race])
+        });
+        let arm = inner.0.position - outer.0.position;
+        let tilting = outer.1.angular_velocity - axes.outer * speeds.outer;
+        let velocity = inner.1.velocity - outer.1.velocity - tilting.cross(&arm);
+        let back = |v: Vector3<f64>| frame.inverse() * v;
+        let rate = speeds.outer + self.joint.ratio * (speeds.inner - speeds.outer);
+        let turn = self.start.turn + 0.5 * self.elapsed * (self.start.rate + rate);
+        let motion = RingMotion {
+            placed: Placed { position: back(arm), axis: back(axes.inner) },
+            twist: stack(&back(velocity), &back(inner.1.angular_velocity - tilting)),
+            turn: [turn, rate],
+        };
+        Seen { seats, races, frame, motion }
+    }
+
+    /// Forces there.
+    pub fn forces(&self, seen: &Seen) -> OnRaces {
+        self.on_races(seen, &self.balls.forces(&seen.motion, &self.start.rested, |_, _, _| ()))
+    }
+
+    /// Forces of the elements as those on both races.
+    fn on_races(&self, seen: &Seen, of: &Forces) -> OnRaces {
+        let held = self.damping.map_or_else(Vector6::zeros, |damping| damping * seen.motion.twist);
+        let wrench = of.wrench - held;
+        let halves = |from: usize| seen.frame * wrench.fixed_rows::<3>(from);
+        let (force, moment) = (halves(0), halves(3));
+        let [inner, outer] = [&seen.races.inner.0, &seen.races.outer.0];
+        // A cage of given speed hands the moment that it takes to the rings, as their speeds make its own.
+        let axis = inner.orientation * Vector3::x();
+        let moment = moment + axis * (self.joint.ratio * of.turning);
+        let arm = inner.position - outer.position;
+        OnRaces {
+            wrenches: PerRace {
+                inner: Wrench { force, moment },
+                outer: Wrench { force: -force, moment: -(moment + arm.cross(&force)) },
+            },
+            elastic: of.elastic,
+            damped: of.damped + held.dot(&seen.motion.twist),
+        }
+    }
+
+    /// State of the elements where the races are, and their forces.
+    pub fn rest(&self, model: &Model, conditions: &Conditions, seen: &Seen) -> (ElementState, OnRaces) {
+        let mut rested = self.start.rested.clone();
+        let forces = self.balls.rest(model, conditions, &seen.motion, &mut rested);
+        let [turn, rate] = seen.motion.turn;
+        let largest = rested.iter().flat_map(|ball| ball.loads).fold(0.0, f64::max);
+        (ElementState { turn, rate, rested, largest }, self.on_races(seen, &forces))
+    }
+
+    /// Adds the forces to trials of the structures.
+    pub fn add(&self, seen: &Seen, on: &OnRaces, trials: &mut [StructureTrial]) {
+        for race in Race::BOTH {
+            if let (Some((structure, seat)), Some(motion)) = (&self.joint.seats[race], &seen.seats[race]) {
+                trials[*structure].add(seat, motion, &on.wrenches[race]);
+            }
+        }
+    }
+
+    /// Adds the derivative of the structures' residuals by their accelerations to a matrix, whose first rows of each structure are these.
+    pub fn add_tangent(
+        &self,
+        (seen, on): (&Seen, &OnRaces),
+        trials: &[StructureTrial],
+        step: &HhtStep,
+        rows: &[usize],
+        matrix: &mut DMatrix<f64>,
+    ) {
+        let tangents = self.balls.tangents(&seen.motion, &self.start.rested);
+        let mut by_displacement = tangents.by_displacement;
+        // A ring that spins turns the elements along.
+        let mut by_spin = by_displacement.column_mut(3);
+        by_spin += tangents.by_turn * self.joint.ratio;
+        let by_rate = tangents.by_rate - self.damping.unwrap_or_else(Matrix6::zeros);
+        let gains = by_displacement * step.position_gain() + by_rate * step.velocity_gain();
+        let ends = PerRace::new(|race| self.relative(race, seen));
+        for row in Race::BOTH {
+            let (Some((structure, seat)), Some(of_row)) = (&self.joint.seats[row], &ends[row]) else {
+                continue;
+            };
+            let at = rows[*structure];
+            for column in Race::BOTH {
+                let (Some((other, seat_of_column)), Some(of_column)) =
+                    (&self.joint.seats[column], &ends[column])
+                else {
+                    continue;
+                };
+                let block = of_row.tr_mul(&(gains * of_column)) * -(1.0 - step.alpha_f);
+                let to = rows[*other];
+                for (i, row) in seat.coordinates().iter().enumerate() {
+                    for (k, column) in seat_of_column.coordinates().iter().enumerate() {
+                        matrix[(at + row, to + column)] += block[(i, k)];
+                    }
+                }
+            }
+            if let Some(motion) = &seen.seats[row] {
+                let turned = trials[*structure].turned_moments(seat, motion, &on.wrenches[row].moment, step);
+                for (i, row) in seat.coordinates().iter().enumerate() {
+                    for (k, column) in seat.coordinates().iter().enumerate() {
+                        matrix[(at + row, at + column)] += turned[(i, k)];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Motion of the inner race as seen from the outer one by the coordinates of the seat of a race.
+    fn relative(&self, race: Race, seen: &Seen) -> Option<OMatrix<f64, U6, Dyn>> {
+        let ((_, seat), motion) = (self.joint.seats[race].as_ref()?, seen.seats[race].as_ref()?);
+        let back: Matrix3<f64> = seen.frame.inverse().to_rotation_matrix().into_inner();
+        let columns = motion.columns();
+        let mut by_seat = Matrix6::zeros();
+        match race {
+            Race::Inner => {
+                by_seat.fixed_view_mut::<3, 3>(0, 0).copy_from(&back);
+                by_seat.fixed_view_mut::<3, 3>(3, 3).copy_from(&(back * columns));
+            }
+            Race::Outer => {
+                let arm = seen.races.inner.0.position - seen.races.outer.0.position;
+                // Its spin is none of the frame.
+                let axis = seen.races.outer.0.orientation * Vector3::x();
+                let tilting = columns - axis * (axis.transpose() * columns);
+                by_seat.fixed_view_mut::<3, 3>(0, 0).copy_from(&-back);
+                by_seat.fixed_view_mut::<3, 3>(0, 3).copy_from(&(back * arm.cross_matrix() * tilting));
+                by_seat.fixed_view_mut::<3, 3>(3, 3).copy_from(&-(back * tilting));
+            }
+        }
+        Some(by_seat * seat.map())
+    }
+}
+
+impl Seen {
+    /// [rad/s] speeds of the cage and the outer race.
+    pub fn speeds(&self) -> [f64; 2] {
+        let (pose, twist) = &self.races.outer;
+        [self.motion.turn[1], twist.angular_velocity.dot(&(pose.orientation * Vector3::x()))]
+    }
+
+    /// A vector of the outer race's axes in those of the world.
+    pub fn in_world(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        self.frame * v
+    }
+}
+
+/// \[W] what both races put into the elements.
+pub fn power_of(seen: &Seen, on: &OnRaces) -> f64 {
+    let of = |race: Race| -seen.races[race].1.power(&on.wrenches[race]);
+    of(Race::Inner) + of(Race::Outer)
+}
