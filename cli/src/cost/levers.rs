@@ -8,6 +8,8 @@ use roulement::scene::units::Time;
 use roulement::scene::{Accuracy, CreepLaw, Drive, Scales, Scene, Solver};
 use roulement::schema::Method;
 
+use crate::error::takes_order_three;
+
 /// A setting that trades accuracy for speed; one curve in the plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, ValueEnum, VariantArray)]
 pub enum Lever {
@@ -292,10 +294,8 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
     let tolerances = TOLERANCES
         .iter()
         .map(|&tolerance| toleranced(Lever::Tolerance, format!("{tolerance:e}"), tolerance, method));
-    let kept_apart = scene.bearings().into_iter().any(|(_, scene)| scene.effects.cage.is_ideal());
-    // Balls that are kept at even spacing go by HHT alone.
-    let others =
-        Method::VARIANTS.iter().filter(|&&other| other != method && !(kept_apart && other != Method::Hht));
+    let takes = |other: Method| other == Method::Hht || takes_order_three(scene);
+    let others = Method::VARIANTS.iter().filter(|&&other| other != method && takes(other));
     let methods = others.flat_map(|&other| {
         let name: &str = other.into();
         TOLERANCES
