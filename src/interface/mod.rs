@@ -3,4 +3,5 @@
 pub mod contradiction;
 pub mod documentation;
 pub mod model_description;
+pub mod references;
 pub mod variables;

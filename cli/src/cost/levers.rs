@@ -294,10 +294,12 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
         .map(|&tolerance| toleranced(Lever::Tolerance, format!("{tolerance:e}"), tolerance, method));
     let kept_apart = scene.bearings().into_iter().any(|(_, scene)| scene.effects.cage.is_ideal());
     // Balls that are kept at even spacing go by HHT alone.
-    let others = Method::VARIANTS.iter().filter(|&&other| other != method && !(kept_apart && other != Method::Hht));
+    let others =
+        Method::VARIANTS.iter().filter(|&&other| other != method && !(kept_apart && other != Method::Hht));
     let methods = others.flat_map(|&other| {
         let name: &str = other.into();
-        TOLERANCES.map(|tolerance| toleranced(Lever::Method, format!("{name}, {tolerance:e}"), tolerance, other))
+        TOLERANCES
+            .map(|tolerance| toleranced(Lever::Method, format!("{name}, {tolerance:e}"), tolerance, other))
     });
     let caps = STEP_CAPS.iter().map(|&cap| {
         changed(Lever::StepCap, seconds(cap), &|s| {

@@ -16,6 +16,7 @@ use crate::analysis::estimate;
 use crate::effects::estimate::missed;
 use crate::effects::frame::FrameSection;
 use crate::interface::contradiction::Contradiction;
+use crate::interface::references::References;
 use crate::interface::variables::{Causality, MachineGroup, MachineVariables, Variable};
 use crate::model::bodies::Race;
 use crate::scene::machine::MachineScene;
@@ -373,6 +374,22 @@ impl Unit {
         inputs: &[usize],
     ) -> Outcome<Vec<Vec<f64>>> {
         derivatives::columns(self, before, &self.played(played), inputs)
+    }
+
+    /// The same by the rate of every input that takes one, in columns by their references; those of others are empty. A start knows no rates.
+    ///
+    /// # Errors
+    /// As of [`Unit::derivatives`].
+    pub fn derivatives_by_rates(
+        &self,
+        before: Option<&MachineSnapshot>,
+        played: &[bool],
+    ) -> Outcome<Vec<Vec<f64>>> {
+        let rated: Vec<usize> = References::new(self.rows()).rates().map(|(_, row)| row).collect();
+        let found = derivatives::columns_of_rates(self, before, &self.played(played), &rated)?;
+        let mut columns = vec![vec![]; self.rows().len()];
+        rated.into_iter().zip(found).for_each(|(row, column)| columns[row] = column);
+        Ok(columns)
     }
 
     /// Tells what is simulated.
