@@ -425,7 +425,7 @@ impl Instance {
                 range.check(&row.name, *value).or_else(|why| error(why.to_string()))?;
             }
         }
-        let started = self.state.phase == Phase::StepComplete;
+        let started = matches!(self.state.phase, Phase::StepComplete | Phase::Intermediate);
         for (reference, value) in references.iter().zip(values) {
             let index = *reference as usize;
             let input = self.unit.rows()[index].causality == Causality::Input;

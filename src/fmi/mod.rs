@@ -8,10 +8,10 @@
 //! state.rs        the changing part of an instance: saved, restored, as bytes
 //! resources.rs    the folder that a package was unpacked to
 //! handles.rs      instances and states held by importers
-//! states_by_handle.rs  what is done with saved states
+//! states_by_handle.rs what is done with saved states by their handles
 //! log.rs          messages to the importer
 //! outcome.rs      outcome of a call
-//! state_machine.rs  calls, and what versions say of them
+//! state_machine.rs calls, and what versions say of them
 //! guard.rs        what every C function is run within
 //! pointers.rs     lists and texts behind pointers
 //! stay.rs         the library stays loaded
@@ -20,7 +20,7 @@
 //! v3/             FMI 3.0, likewise
 //! ```
 //!
-//! Only the folder of a version knows C types; pointers are read in `pointers.rs` alone.
+//! Only the folder of a version knows its C types; what both do with pointers is in `pointers.rs` and `states_by_handle.rs`.
 
 mod build;
 mod directional;

@@ -34,6 +34,8 @@ pub enum Call {
     GetOutputDerivatives,
     /// A communication step.
     DoStep,
+    /// A communication step goes on after the importer was asked for inputs.
+    ContinueStep,
     /// A step in the background is given up, which never happens here.
     CancelStep,
     /// What is known of the last step.
@@ -61,9 +63,15 @@ impl Rules {
     pub fn after(&self, call: Call, status: Status, phase: Phase) -> Phase {
         match status {
             Status::Fatal => Phase::Fatal,
+            // What is refused while the importer is asked for inputs changes nothing about the step that is under way.
+            _ if phase == Phase::Intermediate => phase,
             // A value that was refused leaves the instance as it was, and so does an unwelcome call of no effect.
-            Status::Error if call == Call::DoStep || call == Call::ExitInitializationMode => Phase::Error,
-            Status::Discard if call == Call::DoStep => self.after_discarded_step,
+            Status::Error
+                if matches!(call, Call::DoStep | Call::ContinueStep | Call::ExitInitializationMode) =>
+            {
+                Phase::Error
+            }
+            Status::Discard if matches!(call, Call::DoStep | Call::ContinueStep) => self.after_discarded_step,
             _ => phase,
         }
     }

@@ -25,7 +25,8 @@ impl Instance {
     /// finished: the state is then that of the last time reached.
     pub fn do_step(&mut self, time: f64, step: f64) -> Outcome {
         let now = self.unit.time();
-        self.begin_step(time, step)?;
+        self.check_step(time, step)?;
+        self.take_inputs()?;
         let advanced = self.unit.advance(time + step, &self.state.played);
         self.end_step(now, advanced)
     }
@@ -80,8 +81,11 @@ impl Instance {
         done
     }
 
-    /// Checks a communication step, and takes its inputs and parameters.
-    pub(super) fn begin_step(&mut self, time: f64, step: f64) -> Outcome {
+    /// Checks a communication step.
+    ///
+    /// # Errors
+    /// As of [`Instance::do_step`].
+    pub fn check_step(&self, time: f64, step: f64) -> Outcome {
         let now = self.unit.time();
         if !(step > 0.0 && step.is_finite()) {
             return error(format!("the communication step {step} s is not positive"));
@@ -99,6 +103,25 @@ impl Instance {
             let end = time + step;
             return error(format!("the communication step to {end} s is beyond the stop time {stop} s"));
         }
+        Ok(())
+    }
+
+    /// Takes one step of the integrator on the way to a time \[s], as a communication step of its own. Pose and twist of races that are given
+    /// are then where they have come to: they go on like this until they are set again.
+    ///
+    /// # Errors
+    /// As of [`Instance::do_step`].
+    pub fn do_own_step(&mut self, end: f64) -> Outcome {
+        let now = self.unit.time();
+        self.take_inputs()?;
+        let advanced = self.unit.advance(self.unit.next_point(end), &self.state.played);
+        self.end_step(now, advanced)?;
+        self.unit.follow(&mut self.state.values);
+        Ok(())
+    }
+
+    /// Takes inputs and parameters for the step that begins.
+    fn take_inputs(&mut self) -> Outcome {
         self.prepare()?;
         // Whatever happens from here on, these are no longer the present values.
         self.present = None;

@@ -4,4 +4,5 @@ pub mod contradiction;
 pub mod documentation;
 pub mod model_description;
 pub mod references;
+pub mod terminals;
 pub mod variables;

@@ -81,6 +81,12 @@ fn takes_rate(rows: &[Variable], row: &Variable) -> bool {
         && row.name.strip_suffix(".speed").filter(|_| of_race).is_none_or(led)
 }
 
+/// Can steps of a machine with these variables be taken in pieces, with inputs that are set between them? Motions of a shaft that are given
+/// are announced for a whole one.
+pub fn updates_are_offered(rows: &[Variable]) -> bool {
+    !rows.iter().any(|row| matches!(&row.source, Source::Shaft(source) if source.is_given_velocity()))
+}
+
 /// The rate of an input as a variable of its own.
 pub fn rate_row(row: &Variable) -> RateRow {
     let axis = ["x", "y", "z"].into_iter().find(|axis| row.name.ends_with(&format!(".{axis}")));

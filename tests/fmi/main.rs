@@ -27,3 +27,4 @@ mod several;
 mod system;
 mod version3;
 mod version3_calls;
+mod version3_updates;

@@ -18,6 +18,7 @@ use zip::write::SimpleFileOptions;
 use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
 use roulement::interface::model_description::{ModelDescription, Version, identifier, render_as};
+use roulement::interface::terminals;
 use roulement::interface::variables::{Causality, MachineVariables, Variable};
 use roulement::scene::machine::MachineScene;
 use roulement::schema::regular::{self, LARGEST_BINARY};
@@ -118,6 +119,8 @@ struct Content<'a> {
     /// Version of the standard.
     version: Version,
     description: ModelDescription,
+    /// Its terminals, of packages of FMI 3.0.
+    terminals: String,
     /// The text that its library reads.
     source: &'a str,
     /// Its documentation.
@@ -139,13 +142,20 @@ pub fn write_fmu(
 ) -> Result<(), PackageError> {
     let libraries = read_libraries(libraries)?;
     let machine = Machine::new(scene)?;
-    let wanted = wanted(columns, MachineVariables::new(&machine).rows())?;
+    let variables = MachineVariables::new(&machine);
+    let wanted = wanted(columns, variables.rows())?;
+    let terminals = terminals::render(&terminals::terminals(variables.rows(), &wanted))?;
     let description = render_as(version, &machine, name, &wanted)?;
     let page = match &machine {
         Machine::Bearing(bearing) => documentation::page(bearing.scene(), &wanted),
         Machine::Shaft(system) => documentation::system_page(system, &wanted),
     };
-    write(&Content { version, description, source: scene.source(), page }, name, &libraries, output)
+    write(
+        &Content { version, description, terminals, source: scene.source(), page },
+        name,
+        &libraries,
+        output,
+    )
 }
 
 /// Names of outputs that fit one of the patterns.
@@ -201,6 +211,9 @@ fn write(
         Version::V3 => "terminalsAndIcons/icon.png",
     };
     add(icon, include_bytes!("../../../assets/model.png"))?;
+    if version == Version::V3 {
+        add("terminalsAndIcons/terminalsAndIcons.xml", content.terminals.as_bytes())?;
+    }
     add("documentation/licenses/licenses.txt", include_bytes!("../../../assets/licenses.txt"))?;
     add("documentation/index.html", content.page.as_bytes())?;
     let bytes = zip.finish()?.into_inner();

@@ -232,6 +232,21 @@ impl Unit {
             .map_err(|why: MachineError| (Status::Discard, why.to_string()))
     }
 
+    /// \[s] where the integrator's next step ends on the way to a time, if it succeeds; an equilibrium is one step.
+    pub fn next_point(&self, end: f64) -> f64 {
+        let time = self.time();
+        let dynamic = self.scene.solver().level == Level::Dynamic;
+        let control = self.machine.bearings().next().map(|(_, bearing)| bearing.state().control);
+        let step =
+            control.filter(|_| dynamic).map_or(f64::INFINITY, |control| control.step_within(end - time));
+        if step >= (end - time) * (1.0 - 1e-9) { end } else { time + step }
+    }
+
+    /// Sets the pose and the twist of races that are given to where they are now.
+    pub fn follow(&self, values: &mut [f64]) {
+        self.variables.follow(values, &self.machine);
+    }
+
     /// Warnings at its present time, a sentence each.
     pub fn alarms(&self, alarms: &mut Alarms) -> Vec<String> {
         alarms.step(&self.machine)

@@ -23,6 +23,7 @@ pub static RULES: Rules = Rules {
         (Call::GetAdjointDerivative, &[Initialization, StepComplete, Terminated, Error]),
         (Call::GetOutputDerivatives, &[StepComplete, Terminated, Error]),
         (Call::DoStep, &[StepComplete]),
+        (Call::ContinueStep, &[Intermediate]),
         (Call::NotOffered, &[Instantiated, Initialization, StepComplete, Intermediate, Terminated, Error]),
     ],
     after_discarded_step: StepComplete,

@@ -1,11 +1,12 @@
 //! An instance as version 3 sees it: values by references that may also be those of time and of rates.
 
+use super::updates::{Underway, Updates};
 use crate::fmi::directional::Known;
 use crate::fmi::guard::Held;
 use crate::fmi::instance::Instance;
 use crate::fmi::outcome::{Outcome, error};
-use crate::interface::references::{Place, References, rate_row};
-use crate::interface::variables::Kind;
+use crate::interface::references::{Place, References, rate_row, updates_are_offered};
+use crate::interface::variables::{Causality, Kind};
 
 /// A slave.
 pub struct Slave {
@@ -13,6 +14,10 @@ pub struct Slave {
     pub instance: Instance,
     /// What references are of.
     references: References,
+    /// The importer's callback, where it has one and steps can be taken in pieces.
+    pub updates: Option<Updates>,
+    /// A communication step that has begun and not ended.
+    pub underway: Option<Underway>,
 }
 
 impl Held for Slave {
@@ -23,10 +28,24 @@ impl Held for Slave {
 
 impl Slave {
     /// A slave around an instance that was just made.
-    pub fn new(mut instance: Instance) -> Self {
+    ///
+    /// # Errors
+    /// If one of the variables that it should read or set within steps is none of its inputs and outputs.
+    pub fn new(mut instance: Instance, updates: Option<Updates>, required: &[u32]) -> Outcome<Self> {
         // There are no derivatives of inputs, but inputs that are the rates of others.
         instance.keeps_rates = true;
-        Self { references: References::new(instance.rows()), instance }
+        let updates = updates.filter(|_| updates_are_offered(instance.rows()));
+        let references = References::new(instance.rows());
+        let slave = Self { references, instance, updates, underway: None };
+        for reference in required {
+            if let Place::Row(row) = slave.place(*reference)?
+                && let Some(row) = slave.instance.rows().get(row)
+                && !matches!(row.causality, Causality::Input | Causality::Output)
+            {
+                return error(format!("{} cannot be read or set within a step", row.name));
+            }
+        }
+        Ok(slave)
     }
 
     fn place(&self, reference: u32) -> Outcome<Place> {
@@ -73,6 +92,7 @@ impl Slave {
     /// As of [`Instance::set`], and if there are more or fewer values than variables; nothing is then set.
     pub fn set(&mut self, references: &[u32], kind: Kind, values: &[f64]) -> Outcome {
         Self::check_number(references, values.len())?;
+        self.check_set(references)?;
         if kind != Kind::Real || self.are_rows(references) {
             return self.instance.set(references, kind, values);
         }
@@ -97,6 +117,17 @@ impl Slave {
             self.instance.take_over(row);
         }
         Ok(())
+    }
+
+    /// Refuses parameters within a step.
+    fn check_set(&self, references: &[u32]) -> Outcome {
+        let rows = self.instance.rows();
+        let within = references.iter().filter(|_| self.underway.is_some());
+        let mut set = within.filter_map(|reference| rows.get(*reference as usize));
+        match set.find(|row| row.causality == Causality::Parameter) {
+            Some(row) => error(format!("{} is a parameter and cannot be set within a step", row.name)),
+            None => Ok(()),
+        }
     }
 
     fn knowns(&self, references: &[u32]) -> Outcome<Vec<Known>> {

@@ -3,8 +3,8 @@
 use super::elements::{default_experiment, log_categories, nature, numbers, unit_definitions};
 use super::structure::Output;
 use super::{About, Exported, Xml, identifier, used_units};
-use crate::interface::references::{RateRow, References, rate_row};
-use crate::interface::variables::{Kind, Variable};
+use crate::interface::references::{RateRow, References, rate_row, updates_are_offered};
+use crate::interface::variables::{Causality, Kind, Variable};
 use crate::schema::variable_units::{self as units, Unit};
 
 /// Writes the document.
@@ -18,6 +18,7 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
             units.push(unit);
         }
     });
+    let updated = exported.takes_updates();
     xml.create_element("fmiModelDescription")
         .with_attributes([
             ("fmiVersion", "3.0"),
@@ -30,26 +31,27 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
             ("variableNamingConvention", "structured"),
         ])
         .write_inner_content(|xml| {
-            co_simulation(xml, about)?;
+            co_simulation(xml, about, updated)?;
             unit_definitions(xml, &units)?;
             type_definitions(xml, &units)?;
             log_categories(xml)?;
             default_experiment(xml, about)?;
             xml.create_element("ModelVariables").write_inner_content(|xml| {
                 for (reference, row, start) in exported.all() {
-                    variable(xml, reference, row, start)?;
+                    variable(xml, reference, row, start, updated)?;
                 }
                 time(xml, references)?;
-                rates.iter().try_for_each(|(reference, rate)| rate_of_input(xml, *reference, rate))
+                rates.iter().try_for_each(|(reference, rate)| rate_of_input(xml, *reference, rate, updated))
             })?;
             model_structure(xml, exported, &exported.outputs(about.dependencies))
         })?;
     Ok(())
 }
 
-fn co_simulation(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
+fn co_simulation(xml: &mut Xml, about: &About<'_>, updated: bool) -> std::io::Result<()> {
     let identifier = identifier(about.name);
-    let derivatives = if about.derivatives { "true" } else { "false" };
+    let word = |yes: bool| if yes { "true" } else { "false" };
+    let (derivatives, updates) = (word(about.derivatives), word(updated));
     xml.create_element("CoSimulation")
         .with_attributes([
             ("modelIdentifier", identifier.as_str()),
@@ -59,6 +61,8 @@ fn co_simulation(xml: &mut Xml, about: &About<'_>) -> std::io::Result<()> {
             ("providesAdjointDerivatives", derivatives),
             ("canHandleVariableCommunicationStepSize", "true"),
             ("maxOutputDerivativeOrder", "1"),
+            ("providesIntermediateUpdate", updates),
+            ("canReturnEarlyAfterIntermediateUpdate", updates),
         ])
         .write_empty()?;
     Ok(())
@@ -78,7 +82,13 @@ fn type_definitions(xml: &mut Xml, used: &[Unit]) -> std::io::Result<()> {
     Ok(())
 }
 
-fn variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) -> std::io::Result<()> {
+fn variable(
+    xml: &mut Xml,
+    reference: usize,
+    row: &Variable,
+    start: f64,
+    updated: bool,
+) -> std::io::Result<()> {
     let reference = reference.to_string();
     let numbers = numbers(row, start);
     let kind = if row.kind == Kind::Real { "Float64" } else { "Int64" };
@@ -87,6 +97,8 @@ fn variable(xml: &mut Xml, reference: usize, row: &Variable, start: f64) -> std:
         ("valueReference", reference.as_str()),
         ("description", row.description.as_str()),
     ]);
+    let within_steps = updated && matches!(row.causality, Causality::Input | Causality::Output);
+    let element = element.with_attributes(within_steps.then_some(("intermediateUpdate", "true")));
     let numbers = numbers.iter().map(|(name, value)| (*name, value.as_str()));
     element.with_attributes(nature(row)).with_attributes(numbers).write_empty()?;
     Ok(())
@@ -109,7 +121,7 @@ fn time(xml: &mut Xml, references: &References) -> std::io::Result<()> {
 }
 
 /// An optional input: it starts at 0, and a master that knows no accelerations leaves it there.
-fn rate_of_input(xml: &mut Xml, reference: usize, rate: &RateRow) -> std::io::Result<()> {
+fn rate_of_input(xml: &mut Xml, reference: usize, rate: &RateRow, updated: bool) -> std::io::Result<()> {
     let reference = reference.to_string();
     xml.create_element("Float64")
         .with_attributes([
@@ -121,6 +133,7 @@ fn rate_of_input(xml: &mut Xml, reference: usize, rate: &RateRow) -> std::io::Re
             ("unit", rate.unit.name),
             ("start", "0.0"),
         ])
+        .with_attributes(updated.then_some(("intermediateUpdate", "true")))
         .write_empty()?;
     Ok(())
 }
@@ -153,6 +166,11 @@ fn unknown(xml: &mut Xml, element: &str, reference: usize, known: Option<&[usize
 }
 
 impl Exported {
+    /// Can inputs be set within steps?
+    fn takes_updates(&self) -> bool {
+        updates_are_offered(&self.rows)
+    }
+
     /// The rate of an input, as a variable; by the row of that among all.
     fn rate(&self, row: usize) -> RateRow {
         // Inputs are always told of.

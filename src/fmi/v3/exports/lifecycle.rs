@@ -16,6 +16,7 @@ use crate::fmi::stay::stay_loaded;
 use crate::fmi::v3::logger::{Environment, sink};
 use crate::fmi::v3::slave::Slave;
 use crate::fmi::v3::types::{IntermediateUpdate, LogMessage, Status};
+use crate::fmi::v3::updates::Updates;
 
 /// `"3.0"`.
 #[unsafe(no_mangle)]
@@ -32,12 +33,12 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     _visible: bool,
     logging_on: bool,
     event_mode_used: bool,
-    _early_return_allowed: bool,
+    early_return_allowed: bool,
     required_intermediate_variables: *const u32,
     n_required: usize,
     environment: *mut c_void,
     log_message: Option<LogMessage>,
-    _intermediate_update: Option<IntermediateUpdate>,
+    intermediate_update: Option<IntermediateUpdate>,
 ) -> *mut c_void {
     stay_loaded();
     // SAFETY: the importer's contract.
@@ -55,10 +56,12 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         };
         // SAFETY: the importer's contract.
         let required = unsafe { list(required_intermediate_variables, n_required) }?;
-        if !required.is_empty() {
-            return error("this package has no variables that can be read or set within a step");
-        }
-        Ok(Slave::new(Instance::new(&token, Path::new(&folder), log)?))
+        let updates = intermediate_update.map(|callback| Updates {
+            callback,
+            environment: Environment(environment),
+            early_return: early_return_allowed,
+        });
+        Slave::new(Instance::new(&token, Path::new(&folder), log)?, updates, required)
     })
 }
 

@@ -83,18 +83,40 @@ pub extern "C" fn fmi3DoStep(
     early_return: Option<&mut bool>,
     last_successful_time: Option<&mut f64>,
 ) -> Status {
-    guarded(instance, Call::DoStep, |slave| {
-        let reached = pointers::place(last_successful_time, "the last successful time")?;
+    let mut question = None;
+    let mut early = false;
+    let (mut reached, mut reached_place, mut early_place) = (f64::NAN, None, None);
+    let mut status = guarded(instance, Call::DoStep, |slave| {
+        // The model has no events, and never ends a simulation by itself.
         for (place, what) in [
             (event_handling_needed, "the need of event handling"),
             (terminate_simulation, "the end of the simulation"),
-            (early_return, "an early return"),
         ] {
-            // The model has no events, never ends a simulation by itself, and takes the whole step.
             *pointers::place(place, what)? = false;
         }
-        let done = slave.instance.do_whole_step(time, step);
-        *reached = slave.instance.time();
+        early_place = Some(pointers::place(early_return, "an early return")?);
+        reached_place = Some(pointers::place(last_successful_time, "the last successful time")?);
+        let done = match slave.updates {
+            None => slave.instance.do_whole_step(time, step),
+            Some(_) => slave.begin_updated_step(time, step),
+        };
+        (question, reached) = (slave.question(), slave.instance.time());
         done
-    })
+    });
+    // The importer may call the instance while it is asked: nothing of it is in use then.
+    while let Some(asked) = question.take() {
+        let answer = asked.ask();
+        status = guarded(instance, Call::ContinueStep, |slave| {
+            let done = slave.continue_updated_step(answer);
+            (question, reached) = (slave.question(), slave.instance.time());
+            if question.is_none() {
+                early = slave.end_updated_step();
+            }
+            done
+        });
+    }
+    if let (Some(early_place), Some(reached_place)) = (early_place, reached_place) {
+        (*early_place, *reached_place) = (early, reached);
+    }
+    status
 }
