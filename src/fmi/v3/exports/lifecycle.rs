@@ -9,7 +9,7 @@ use super::guarded;
 use crate::fmi::guard;
 use crate::fmi::instance::Instance;
 use crate::fmi::log::Log;
-use crate::fmi::outcome::error;
+use crate::fmi::outcome::{self, error};
 use crate::fmi::pointers::{list, text, texts};
 use crate::fmi::state_machine::Call;
 use crate::fmi::stay::stay_loaded;
@@ -49,7 +49,8 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
             return error("the instance name is missing");
         }
         if event_mode_used {
-            return error("this package has no event mode");
+            // fmi-rs says so of every package.
+            log.write(outcome::Status::Warning, "this package has no event mode: it has no events");
         }
         let (Some(token), Some(folder)) = (token, folder) else {
             return error("the instantiation token or the path of the resources is missing");
