@@ -124,9 +124,9 @@ fn invariant_a_callback_that_sets_nothing_lets_a_race_go_on() {
     // It has gone as far as it was announced to.
     let [there, _] = both.map(|slave| slave.get(&[place])[0]);
     assert!((there - 1e-6).abs() < 1e-8, "{there}");
-    both.map(Slave::free);
+    both.into_iter().for_each(Slave::free);
     drop(master);
-    assert!(asked > 30, "{asked}");
+    assert!(asked > 10, "{asked}");
 }
 
 /// [kg] the lightest shaft of docs/coupling.md.
