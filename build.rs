@@ -38,7 +38,7 @@ fn main() -> io::Result<()> {
     println!("cargo::rustc-env=ROULEMENT_BUILD={:016x}", hasher.finish());
 
     // Importers may unload the library between two instances, and the first with it (Ecos does). It stays loaded; on
-    // Windows it sees to that itself (src/fmi/v2/stay.rs).
+    // Windows it sees to that itself (src/fmi/stay.rs).
     if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "linux") {
         println!("cargo::rustc-link-arg-cdylib=-Wl,-z,nodelete");
     }

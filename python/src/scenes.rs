@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use pyo3::prelude::*;
 use roulement::analysis::{auto, estimate};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
-use roulement::interface::model_description::{all, render};
+use roulement::interface::model_description::{Version, all, render};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::system::{MachineEquilibrium, largest_speed};
@@ -159,6 +159,15 @@ pub fn library_beside(program: PathBuf) -> PyResult<PathBuf> {
     built_with(&program).map_err(file)
 }
 
+/// Version of FMI by its number.
+fn version(fmi: u32) -> PyResult<Version> {
+    match fmi {
+        2 => Ok(Version::V2),
+        3 => Ok(Version::V3),
+        other => Err(value(format!("fmi = {other} is neither 2 nor 3"))),
+    }
+}
+
 /// Writes the FMU of a scene.
 #[pyfunction]
 pub fn package(
@@ -168,8 +177,10 @@ pub fn package(
     libraries: Vec<PathBuf>,
     name: &str,
     columns: Vec<String>,
+    fmi: u32,
 ) -> PyResult<()> {
-    py.detach(|| write_fmu(&scene.resolved()?, name, &columns, &libraries, &path).map_err(file))
+    let version = version(fmi)?;
+    py.detach(|| write_fmu(&scene.resolved()?, version, name, &columns, &libraries, &path).map_err(file))
 }
 
 /// Runs the study of accuracy against CPU time into a directory; gives the files.

@@ -32,11 +32,10 @@ pub struct State(FmuState);
 
 fn log_to(messages: &Messages) -> Log {
     let messages = Arc::clone(messages);
-    let sink = move |status: Status, _: &CStr, format: &CStr| {
-        // Percent signs and hashes stand twice in formats. A refusal is told by its exception.
-        let text = format.to_string_lossy().replace("%%", "%").replace("##", "#");
+    let sink = move |status: Status, _: &CStr, text: &str| {
+        // A refusal is told by its exception.
         if let (Ok(mut messages), Status::Ok | Status::Warning) = (messages.lock(), status) {
-            messages.push(text);
+            messages.push(text.into());
         }
     };
     Log::new(Box::new(sink), true)

@@ -1,6 +1,7 @@
 //! An instance: its start, its phases, its variables.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use super::log::Log;
 use super::outcome::{Outcome, Status, error};
@@ -14,6 +15,7 @@ use crate::scene::machine::MachineScene;
 use crate::scene::{Giver, Scene};
 use crate::schema::numbers::Variability;
 use crate::simulation::alarms::Alarms;
+use crate::simulation::driven::MachineSnapshot;
 
 /// A slave.
 pub struct Instance {
@@ -37,10 +39,16 @@ pub struct Instance {
     pub columns: Option<Vec<Vec<f64>>>,
     /// Inputs by which derivatives were asked for at this point, or at the last one where some were.
     pub asked: BTreeSet<usize>,
+    /// Derivatives of outputs by the rates of inputs at this point, if they were asked for.
+    pub(super) rate_columns: Option<Vec<Vec<f64>>>,
     /// Warnings that were given.
     warned: Warned,
     /// Watch on pressures and motions, for warnings in the log.
     pub(super) alarms: Alarms,
+    /// Do rates of inputs hold until they are set again, as inputs do? Otherwise they are those of one step.
+    pub(super) keeps_rates: bool,
+    /// Memory of a snapshot.
+    pub(super) spare: Option<MachineSnapshot>,
 }
 
 /// [-] steps in a row whose poses contradict their twists before that is told: a vibration may do so where it turns back.
@@ -58,12 +66,12 @@ struct Warned {
 }
 
 impl Instance {
-    /// A slave of the package whose resources are at `location`.
+    /// A slave of the package whose resources are in a folder.
     ///
     /// # Errors
     /// If the scene cannot be read or started, or `guid` is not that of the scene's model description.
-    pub fn new(guid: &str, location: &str, log: Log) -> Outcome<Self> {
-        let path = resources::path(location)?.join(resources::SCENE_FILE);
+    pub fn new(guid: &str, folder: &Path, log: Log) -> Outcome<Self> {
+        let path = folder.join(resources::SCENE_FILE);
         let failed = |why: String| (Status::Error, why);
         let scene = MachineScene::of_package(&path).map_err(|why| failed(why.to_string()))?;
         let instance = Self::of_machine(scene, log)?;
@@ -108,8 +116,11 @@ impl Instance {
             previous: None,
             columns: None,
             asked: BTreeSet::new(),
+            rate_columns: None,
             warned: Warned::default(),
             alarms: Alarms::default(),
+            keeps_rates: false,
+            spare: None,
         }
     }
 
@@ -133,6 +144,9 @@ impl Instance {
             asked: self.asked.clone(),
             warned: self.warned,
             alarms: self.alarms.clone(),
+            rate_columns: self.rate_columns.clone(),
+            keeps_rates: self.keeps_rates,
+            spare: None,
         }
     }
 
@@ -271,7 +285,7 @@ impl Instance {
         self.state.values = values;
         self.present = None;
         self.previous = None;
-        self.columns = None;
+        self.forget_columns();
         self.state.changed = false;
         Ok(())
     }
@@ -323,6 +337,12 @@ impl Instance {
         }
     }
 
+    /// Derivatives are of another point from now on.
+    pub(super) fn forget_columns(&mut self) {
+        self.columns = None;
+        self.rate_columns = None;
+    }
+
     /// Ends the simulation.
     pub fn terminate(&mut self) {
         self.state.phase = Phase::Terminated;
@@ -335,7 +355,7 @@ impl Instance {
         self.stop = None;
         self.present = None;
         self.previous = None;
-        self.columns = None;
+        self.forget_columns();
         self.warned = Warned::default();
         self.alarms = Alarms::default();
     }
@@ -405,7 +425,7 @@ impl Instance {
                 range.check(&row.name, *value).or_else(|why| error(why.to_string()))?;
             }
         }
-        let started = self.state.phase == Phase::StepComplete;
+        let started = matches!(self.state.phase, Phase::StepComplete | Phase::Intermediate);
         for (reference, value) in references.iter().zip(values) {
             let index = *reference as usize;
             let input = self.unit.rows()[index].causality == Causality::Input;

@@ -2,10 +2,11 @@
 
 use std::ffi::{CStr, CString};
 
-use super::outcome::Status;
+use super::outcome::{Outcome, Status, error};
+use crate::interface::model_description::LOG_CATEGORIES;
 
-/// Where messages go: status, category, format.
-pub type Sink = Box<dyn Fn(Status, &CStr, &CStr) + Send>;
+/// Where messages go: status, category, text.
+pub type Sink = Box<dyn Fn(Status, &CStr, &str) + Send>;
 
 /// Category of a status, as listed in the model description.
 fn category(status: Status) -> &'static CStr {
@@ -32,12 +33,6 @@ pub fn plain(text: &str) -> CString {
     CString::new(text.replace('\0', " ")).unwrap_or_default()
 }
 
-/// Text as the format of a message, which an importer's `printf` shows as it is: percent signs, and hashes, which name a
-/// variable, stand twice (FMI 2.0.4, section 2.1.5).
-pub fn format_of(text: &str) -> CString {
-    plain(&text.replace('%', "%%").replace('#', "##"))
-}
-
 impl Log {
     /// A log that writes to an importer.
     pub fn new(sink: Sink, on: bool) -> Self {
@@ -45,15 +40,23 @@ impl Log {
     }
 
     /// Switches logging, for the named categories or, if there are none, for all.
-    pub fn set(&mut self, on: bool, categories: Vec<String>) {
+    ///
+    /// # Errors
+    /// If there is no such category.
+    pub fn set(&mut self, on: bool, categories: Vec<String>) -> Outcome {
+        let known = |name: &String| LOG_CATEGORIES.iter().any(|(known, _)| known == name);
+        if let Some(unknown) = categories.iter().find(|name| !known(name)) {
+            return error(format!("there is no log category {unknown}"));
+        }
         self.on = on;
         self.categories = categories;
+        Ok(())
     }
 
     /// Writes a message. What went wrong is always told; events only with logging on.
     pub fn write(&self, status: Status, message: &str) {
         if self.tells(status) {
-            (self.sink)(status, category(status), &format_of(message));
+            (self.sink)(status, category(status), message);
         }
     }
 
@@ -63,16 +66,5 @@ impl Log {
         let wanted = self.categories.is_empty()
             || self.categories.iter().any(|name| name.as_bytes() == category.to_bytes());
         wanted && (status != Status::Ok || self.on)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn percent_and_hash_stand_twice_in_formats_and_once_in_names() {
-        assert_eq!(format_of("100 % of #3\0").as_c_str(), c"100 %% of ##3 ");
-        assert_eq!(plain("50%\0#1").as_c_str(), c"50% #1");
     }
 }

@@ -81,7 +81,7 @@ impl Instance {
         self.state = state.clone();
         self.present = None;
         self.previous = None;
-        self.columns = None;
+        self.forget_columns();
         Ok(())
     }
 

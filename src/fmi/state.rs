@@ -21,6 +21,8 @@ pub enum Phase {
     Error,
     /// After a fault: free only.
     Fatal,
+    /// Within a step, while the importer is asked for inputs.
+    Intermediate,
 }
 
 /// State of the interface: phase and values as set. The state of what is simulated is its own.
@@ -76,7 +78,7 @@ impl State {
     /// Can an instance be in this state that has as many variables and scripts as this one?
     pub fn fits(&self, other: &Self) -> bool {
         let (n_variables, n_scripts) = (other.values.len(), other.set.len());
-        self.phase != Phase::Fatal
+        !matches!(self.phase, Phase::Fatal | Phase::Intermediate)
             && [&self.set, &self.played].iter().all(|list| list.len() == n_scripts)
             && self.given.len() == n_variables
             && self.lists().all(|list| list.len() == n_variables)

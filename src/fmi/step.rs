@@ -3,9 +3,18 @@
 use super::instance::Instance;
 use super::outcome::{Outcome, Status, error};
 use crate::interface::variables::{Causality, Kind};
+use crate::simulation::driven::MachineSnapshot;
 
 /// [-] relative disagreement of importer and instance about the time that is still rounding.
 const TIME_TOLERANCE: f64 = 1e-9;
+
+/// What was before a step.
+pub(super) struct Begun {
+    before: Option<MachineSnapshot>,
+    last_step: f64,
+    played: Vec<bool>,
+    tuned_outputs: Option<Vec<f64>>,
+}
 
 impl Instance {
     /// Advances by a communication step.
@@ -15,6 +24,68 @@ impl Instance {
     /// (FMI 2.0.4, section 2.1.6); discarded if the step cannot be
     /// finished: the state is then that of the last time reached.
     pub fn do_step(&mut self, time: f64, step: f64) -> Outcome {
+        let now = self.unit.time();
+        self.check_step(time, step)?;
+        self.take_inputs()?;
+        let advanced = self.unit.advance(time + step, &self.state.played);
+        self.end_step(now, advanced)
+    }
+
+    /// The same, but what could not be finished is not begun: where a step is discarded, the instance is where it was before.
+    ///
+    /// # Errors
+    /// As of [`Instance::do_step`].
+    pub fn do_whole_step(&mut self, time: f64, step: f64) -> Outcome {
+        let begun = self.remember();
+        let done = self.do_step(time, step);
+        self.keep_or_undo(begun, done)
+    }
+
+    /// What a step changes that may be discarded.
+    pub(super) fn remember(&mut self) -> Begun {
+        let before = self.state.before.take();
+        self.state.before = self.spare.take();
+        Begun {
+            before,
+            last_step: self.state.last_step,
+            played: self.state.played.clone(),
+            tuned_outputs: self.state.tuned_outputs.clone(),
+        }
+    }
+
+    /// Goes back to where a step began if it was discarded or refused.
+    pub(super) fn keep_or_undo(&mut self, begun: Begun, done: Outcome) -> Outcome {
+        match &done {
+            Ok(()) => {
+                self.spare = begun.before;
+                return done;
+            }
+            Err((Status::Discard, _)) => {
+                let start = self.state.before.take();
+                let restored = start.as_ref().is_some_and(|start| self.unit.restore(start));
+                debug_assert!(restored, "a snapshot of this very unit fits it");
+                let scripted = self.unit.inputs().iter().filter(|index| {
+                    self.unit.script_of(**index).is_some_and(|script| self.state.played[script])
+                });
+                for &index in scripted {
+                    self.state.values[index] = self.unit.value(index);
+                }
+                self.spare = start;
+                (self.state.last_step, self.state.played) = (begun.last_step, begun.played);
+                self.state.tuned_outputs = begun.tuned_outputs;
+            }
+            // Refused before anything moved.
+            Err(_) => self.spare = self.state.before.take(),
+        }
+        self.state.before = begun.before;
+        done
+    }
+
+    /// Checks a communication step.
+    ///
+    /// # Errors
+    /// As of [`Instance::do_step`].
+    pub fn check_step(&self, time: f64, step: f64) -> Outcome {
         let now = self.unit.time();
         if !(step > 0.0 && step.is_finite()) {
             return error(format!("the communication step {step} s is not positive"));
@@ -32,11 +103,30 @@ impl Instance {
             let end = time + step;
             return error(format!("the communication step to {end} s is beyond the stop time {stop} s"));
         }
+        Ok(())
+    }
+
+    /// Takes one step of the integrator on the way to a time \[s], as a communication step of its own. Pose and twist of races that are given
+    /// are then where they have come to: they go on like this until they are set again.
+    ///
+    /// # Errors
+    /// As of [`Instance::do_step`].
+    pub fn do_own_step(&mut self, end: f64) -> Outcome {
+        let now = self.unit.time();
+        self.take_inputs()?;
+        let advanced = self.unit.advance(self.unit.next_point(end), &self.state.played);
+        self.end_step(now, advanced)?;
+        self.unit.follow(&mut self.state.values);
+        Ok(())
+    }
+
+    /// Takes inputs and parameters for the step that begins.
+    fn take_inputs(&mut self) -> Outcome {
         self.prepare()?;
         // Whatever happens from here on, these are no longer the present values.
         self.present = None;
         self.previous = None;
-        self.columns = None;
+        self.forget_columns();
         // A point that a step has led to is found again from its snapshot, but for parameters that have changed.
         self.state.tuned_outputs = None;
         if self.state.changed {
@@ -50,9 +140,15 @@ impl Instance {
             Some(before) => self.unit.snapshot_into(before),
             none => *none = Some(self.unit.snapshot()),
         }
-        let advanced = self.unit.advance(time + step, &self.state.played);
-        // A derivative belongs to the communication point that it was set for.
-        self.unit.inputs().iter().for_each(|index| self.state.rates[*index] = 0.0);
+        Ok(())
+    }
+
+    /// Looks at what a step since `now` \[s] has led to, and takes over the inputs that scripts gave.
+    pub(super) fn end_step(&mut self, now: f64, advanced: Outcome) -> Outcome {
+        if !self.keeps_rates {
+            // A derivative belongs to the communication point that it was set for.
+            self.unit.inputs().iter().for_each(|index| self.state.rates[*index] = 0.0);
+        }
         let reached = self.unit.time();
         self.state.last_step = reached - now;
         if !self.unit.is_finite() {

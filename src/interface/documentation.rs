@@ -94,7 +94,7 @@ pub fn system_page(system: &System, wanted: Wanted<'_>) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
          <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
-         <p>A shaft on {bearings} ball bearings, in one implicit step. FMI 2.0 co-simulation, made by roulement {version}.</p>\n\
+         <p>A shaft on {bearings} ball bearings, in one implicit step. FMI co-simulation, made by roulement {version}.</p>\n\
          <h2>Frames</h2>\n<p>Right-handed, x is the axis of the shaft. Loads, points and seats are in these axes, about which the shaft \
          does not turn them. A bearing has axes of its own, with its centre as the origin, and all its variables are in them: those of \
          a bearing that is mounted against the shaft's axis are turned by half a turn about z (x and y change their sign). {turned}</p>\n\
@@ -156,7 +156,7 @@ pub fn page(scene: &Scene, wanted: Wanted<'_>) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
          <style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n\
          <p>A ball bearing in three dimensions (Bovet, Linares, Zamponi, Mermoz 2013): {balls} balls as rigid bodies \
-         between two races, Hertz contact, rolling contact with creep and spin, implicit time integration. FMI 2.0 \
+         between two races, Hertz contact, rolling contact with creep and spin, implicit time integration. FMI \
          co-simulation, made by roulement {version}.</p>\n\
          <h2>Frames</h2>\n<p>Right-handed, x is the bearing axis, the origin is the bearing centre; all components are in \
          these world axes. Azimuths count from +y towards +z. A force or moment of a race is what the bearing exerts on \

@@ -3,4 +3,6 @@
 pub mod contradiction;
 pub mod documentation;
 pub mod model_description;
+pub mod references;
+pub mod terminals;
 pub mod variables;

@@ -9,6 +9,7 @@ mod dependencies;
 mod film;
 #[path = "../fmi2_abi/mod.rs"]
 mod fmi2_abi;
+mod fmi3_abi;
 mod given;
 mod growth;
 mod housing;
@@ -24,3 +25,6 @@ mod scenes;
 mod scripts;
 mod several;
 mod system;
+mod version3;
+mod version3_calls;
+mod version3_updates;

@@ -4,6 +4,7 @@
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 
 use roulement::fmi::v2::{CallbackFunctions, Status};
+use roulement::fmi::v3;
 
 use crate::fmi2_abi::{Component, Package, scene_text};
 
@@ -88,5 +89,77 @@ fn regression_an_instance_outlives_the_unloading_of_its_library() {
     let second = library.start(&package);
     let forces = [first, second].map(|c| library.run(c, force));
     assert!(forces[0] < -500.0 && forces[0] == forces[1], "{forces:?}");
+    library.unload();
+}
+
+#[test]
+fn regression_an_instance_of_version_3_outlives_the_unloading_of_its_library() {
+    type Instantiate3 = unsafe extern "C" fn(
+        *const c_char,
+        *const c_char,
+        *const c_char,
+        bool,
+        bool,
+        bool,
+        bool,
+        *const u32,
+        usize,
+        Component,
+        *const c_void,
+        *const c_void,
+    ) -> Component;
+    type Enter3 = unsafe extern "C" fn(Component, bool, f64, f64, bool, f64) -> v3::Status;
+    type Exit3 = unsafe extern "C" fn(Component) -> v3::Status;
+    type Flag = *mut bool;
+    type DoStep3 = unsafe extern "C" fn(Component, f64, f64, bool, Flag, Flag, Flag, *mut f64) -> v3::Status;
+    type GetFloat64 = unsafe extern "C" fn(Component, *const u32, usize, *mut f64, usize) -> v3::Status;
+    let package = Package::new("reload3", &scene_text("wrench"));
+    let (force, resources) = (package.reference("inner.force.x"), package.resources());
+    let start = |library: &Library| unsafe {
+        let instantiate = library.function::<Instantiate3>(c"fmi3InstantiateCoSimulation");
+        let (name, token, none) = (c"bearing".as_ptr(), package.guid.as_ptr(), std::ptr::null());
+        let nothing = std::ptr::null_mut();
+        let c = instantiate(
+            name,
+            token,
+            resources.as_ptr(),
+            false,
+            false,
+            false,
+            false,
+            std::ptr::null(),
+            0,
+            nothing,
+            none,
+            none,
+        );
+        assert!(!c.is_null());
+        let enter = library.function::<Enter3>(c"fmi3EnterInitializationMode");
+        assert_eq!(enter(c, false, 0.0, 0.0, false, 0.0), v3::Status::Ok);
+        assert_eq!(library.function::<Exit3>(c"fmi3ExitInitializationMode")(c), v3::Status::Ok);
+        c
+    };
+    let run = |library: &Library, c: Component| unsafe {
+        let (mut flags, mut value) = ([false; 3], f64::NAN);
+        let [event, end, early] = &mut flags;
+        for k in 0..10 {
+            let step = library.function::<DoStep3>(c"fmi3DoStep");
+            let time = f64::from(k) * 1e-4;
+            assert_eq!(step(c, time, 1e-4, false, event, end, early, &mut value), v3::Status::Ok);
+        }
+        let get = library.function::<GetFloat64>(c"fmi3GetFloat64");
+        assert_eq!(get(c, &force, 1, &mut value, 1), v3::Status::Ok);
+        value
+    };
+    let library = Library::load();
+    let first = start(&library);
+    library.unload();
+    let library = Library::load();
+    let second = start(&library);
+    let forces = [first, second].map(|c| run(&library, c));
+    assert!(forces[0] < -500.0 && forces[0] == forces[1], "{forces:?}");
+    // The same bearing as through the other version.
+    let third = library.start(&package);
+    assert_eq!(library.run(third, force), forces[0]);
     library.unload();
 }

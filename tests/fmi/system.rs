@@ -61,7 +61,7 @@ fn text(shaft: &str, mesh: &str, left: &str) -> String {
 const SPEED: &str = "speed = \"6000 rpm\"";
 const CONSTANT: &str = "force = [337.8, -475.0, 1260.5]\nmoment = [30.0, 0, -8.04]";
 
-fn plain() -> String {
+pub fn plain() -> String {
     text(SPEED, CONSTANT, "")
 }
 

@@ -200,6 +200,11 @@ impl Package {
         c
     }
 
+    /// Folder of the resources, as FMI 3.0 has it.
+    pub fn resources(&self) -> CString {
+        CString::new(self.folder.to_str().unwrap()).unwrap()
+    }
+
     pub fn reference(&self, name: &str) -> u32 {
         self.rows.iter().position(|row| row.name == name).unwrap() as u32
     }

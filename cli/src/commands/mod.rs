@@ -27,10 +27,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::auto;
-use roulement::interface::model_description::{all, render};
+use roulement::interface::model_description::{Version, all, render_as};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
@@ -65,7 +66,7 @@ enum Command {
     Effects(effects::Options),
     /// Make one page of results: drawing, plots, spectra, playback; of a run, of several, or of a sweep.
     Report(report::Options),
-    /// Pack a scene, or a shaft with its bearings, as an FMI 2.0 co-simulation FMU.
+    /// Pack a scene, or a shaft with its bearings, as a co-simulation FMU of FMI 2.0 or 3.0.
     Fmu {
         /// Scene file, or file of a system.
         scene: PathBuf,
@@ -82,6 +83,9 @@ enum Command {
         /// not given. Inputs and parameters are always there.
         #[arg(long, value_delimiter = ',', value_name = "LIST")]
         columns: Vec<String>,
+        /// Version of FMI.
+        #[arg(long, default_value = "2", value_name = "VERSION", value_parser = version())]
+        fmi: Version,
     },
     /// Write packages that are connected, as an SSP file and as an OSP system structure for libcosim, from one description.
     System(system::Options),
@@ -97,7 +101,15 @@ enum Command {
     Describe {
         /// Scene file.
         scene: PathBuf,
+        /// Version of FMI.
+        #[arg(long, default_value = "2", value_name = "VERSION", value_parser = version())]
+        fmi: Version,
     },
+}
+
+/// Reads a version of FMI.
+fn version() -> impl TypedValueParser<Value = Version> {
+    PossibleValuesParser::new(["2", "3"]).map(|text| if text == "3" { Version::V3 } else { Version::V2 })
 }
 
 /// Reads a scene and finds out its effects where it asks for that; what its reader should know goes to standard error.
@@ -159,10 +171,10 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Modes(options) => modes::run(&options)?,
         Command::Rating(options) => rating::run(&options)?,
         Command::Cage(options) => cage::run(&options)?,
-        Command::Fmu { scene, output, library, name, columns } => {
+        Command::Fmu { scene, output, library, name, columns, fmi } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
-            write_fmu(&load_for(&scene, true)?, &name, &columns, &libraries, &output)?;
+            write_fmu(&load_for(&scene, true)?, fmi, &name, &columns, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
         Command::Scene(options) => scene::run(&options)?,
@@ -174,10 +186,10 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Contact(options) => return contact::run(&options),
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost(options) => return cost::run(options),
-        Command::Describe { scene } => {
+        Command::Describe { scene, fmi } => {
             let name = name_of(&scene);
             let machine = Machine::new(&load_for(&scene, true)?)?;
-            say(&render(&machine, &name, &all)?.xml)?;
+            say(&render_as(fmi, &machine, &name, &all)?.xml)?;
         }
     }
     Ok(ExitCode::SUCCESS)

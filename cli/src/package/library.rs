@@ -2,22 +2,26 @@
 
 use std::path::Path;
 
+use roulement::interface::model_description::Version;
+
 use object::{Architecture, BinaryFormat, FileKind, Object, ObjectKind, ObjectSegment};
 
-/// A platform that packages know (FMI 2.0.4, section 2.3); all are 64-bit x86.
+/// A platform that packages know (FMI 2.0.4, section 2.3; FMI 3.0, section 2.5.1.4); all are 64-bit x86.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Platform {
     /// Folder below `binaries`.
     pub folder: &'static str,
+    /// That of FMI 3.0.
+    folder3: &'static str,
     /// Ending of its libraries.
     pub ending: &'static str,
     format: BinaryFormat,
 }
 
 const PLATFORMS: [Platform; 3] = [
-    Platform { folder: "linux64", ending: "so", format: BinaryFormat::Elf },
-    Platform { folder: "win64", ending: "dll", format: BinaryFormat::Pe },
-    Platform { folder: "darwin64", ending: "dylib", format: BinaryFormat::MachO },
+    Platform { folder: "linux64", folder3: "x86_64-linux", ending: "so", format: BinaryFormat::Elf },
+    Platform { folder: "win64", folder3: "x86_64-windows", ending: "dll", format: BinaryFormat::Pe },
+    Platform { folder: "darwin64", folder3: "x86_64-darwin", ending: "dylib", format: BinaryFormat::MachO },
 ];
 
 /// Platform of a library by the ending of its name.
@@ -44,6 +48,14 @@ fn machine_name(architecture: Architecture, bits: u32) -> String {
 }
 
 impl Platform {
+    /// Folder below `binaries` of packages of a version.
+    pub fn folder_of(&self, version: Version) -> &'static str {
+        match version {
+            Version::V2 => self.folder,
+            Version::V3 => self.folder3,
+        }
+    }
+
     /// Kind of library that its loader loads, in words.
     pub fn wanted(&self) -> String {
         format!("a shared library, {} for x86-64", format_name(self.format))

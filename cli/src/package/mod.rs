@@ -17,7 +17,8 @@ use zip::write::SimpleFileOptions;
 
 use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
-use roulement::interface::model_description::{ModelDescription, identifier, render};
+use roulement::interface::model_description::{ModelDescription, Version, identifier, render_as};
+use roulement::interface::terminals;
 use roulement::interface::variables::{Causality, MachineVariables, Variable};
 use roulement::scene::machine::MachineScene;
 use roulement::schema::regular::{self, LARGEST_BINARY};
@@ -115,20 +116,25 @@ pub fn name_of(file: &Path) -> String {
 
 /// Contents of a package beside its libraries.
 struct Content<'a> {
+    /// Version of the standard.
+    version: Version,
     description: ModelDescription,
+    /// Its terminals, of packages of FMI 3.0.
+    terminals: String,
     /// The text that its library reads.
     source: &'a str,
     /// Its documentation.
     page: String,
 }
 
-/// Writes the package of a machine under a name, with one library per platform, to `output`; an existing file is replaced only by a complete one.
+/// Writes the package of a machine for a version of the standard under a name, with one library per platform, to `output`; an existing file is replaced only by a complete one.
 /// It has those outputs alone whose names fit one of the patterns, as [`crate::report::results::Choice`] has them; all if there is none.
 ///
 /// # Errors
 /// See [`PackageError`].
 pub fn write_fmu(
     scene: &MachineScene,
+    version: Version,
     name: &str,
     columns: &[String],
     libraries: &[PathBuf],
@@ -136,13 +142,20 @@ pub fn write_fmu(
 ) -> Result<(), PackageError> {
     let libraries = read_libraries(libraries)?;
     let machine = Machine::new(scene)?;
-    let wanted = wanted(columns, MachineVariables::new(&machine).rows())?;
-    let description = render(&machine, name, &wanted)?;
+    let variables = MachineVariables::new(&machine);
+    let wanted = wanted(columns, variables.rows())?;
+    let terminals = terminals::render(&terminals::terminals(variables.rows(), &wanted))?;
+    let description = render_as(version, &machine, name, &wanted)?;
     let page = match &machine {
         Machine::Bearing(bearing) => documentation::page(bearing.scene(), &wanted),
         Machine::Shaft(system) => documentation::system_page(system, &wanted),
     };
-    write(&Content { description, source: scene.source(), page }, name, &libraries, output)
+    write(
+        &Content { version, description, terminals, source: scene.source(), page },
+        name,
+        &libraries,
+        output,
+    )
 }
 
 /// Names of outputs that fit one of the patterns.
@@ -179,6 +192,7 @@ fn write(
     output: &Path,
 ) -> Result<(), PackageError> {
     let identifier = identifier(name);
+    let version = content.version;
     // Without time stamps: the same scene and library give the same bytes.
     let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
@@ -187,11 +201,19 @@ fn write(
         Ok(zip.write_all(content)?)
     };
     add("modelDescription.xml", content.description.xml.as_bytes())?;
-    for (Platform { folder, ending, .. }, library) in libraries {
+    for (platform, library) in libraries {
+        let (folder, ending) = (platform.folder_of(version), platform.ending);
         add(&format!("binaries/{folder}/{identifier}.{ending}"), library)?;
     }
     add(&format!("resources/{SCENE_FILE}"), content.source.as_bytes())?;
-    add("model.png", include_bytes!("../../../assets/model.png"))?;
+    let icon = match version {
+        Version::V2 => "model.png",
+        Version::V3 => "terminalsAndIcons/icon.png",
+    };
+    add(icon, include_bytes!("../../../assets/model.png"))?;
+    if version == Version::V3 {
+        add("terminalsAndIcons/terminalsAndIcons.xml", content.terminals.as_bytes())?;
+    }
     add("documentation/licenses/licenses.txt", include_bytes!("../../../assets/licenses.txt"))?;
     add("documentation/index.html", content.page.as_bytes())?;
     let bytes = zip.finish()?.into_inner();

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use roulement::analysis::auto;
+use roulement::interface::model_description::Version;
 use roulement::scene::Scene;
 use roulement::schema::regular::{self, LARGEST_BINARY};
 
@@ -88,7 +89,8 @@ pub fn prepare(
                 if libraries.is_empty() {
                     libraries.push(library_beside_executable().map_err(|why| failed(why.to_string()))?);
                 }
-                write_fmu(&scene.into(), name, &[], &libraries, &package)
+                // Masters of both structures read FMI 2.0; of FMI 3.0 libcosim reads nothing.
+                write_fmu(&scene.into(), Version::V2, name, &[], &libraries, &package)
                     .map_err(|why| failed(why.to_string()))?;
                 regular::bytes(&package, LARGEST_BINARY).map_err(file_error("read", &package))?
             }

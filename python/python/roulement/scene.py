@@ -113,17 +113,17 @@ def find_libraries():
     return found
 
 
-def package(scene, path, library=None, name=None, columns=()):
-    """Writes the FMI 2.0 package of a scene, a bearing or a shaft with its bearings; returns its path.
+def package(scene, path, library=None, name=None, columns=(), fmi=2):
+    """Writes the package of a scene, of FMI 2.0 or, with `fmi=3`, of FMI 3.0: a bearing or a shaft with its bearings; returns its path.
 
     `library` is the shared library, or a list with one for each platform, that of this package if not given (`find_libraries`); `name`
     that of the model, of the file if not given; `columns` are the outputs that the package has, `*` stands for any characters in their
     names, all if not given.
-    Raises OSError if a library is missing or of another platform.
+    Raises OSError if a library is missing or of another platform, ValueError for another `fmi`.
     """
     if library is None:
         library = find_libraries()
     elif isinstance(library, (str, os.PathLike)):
         library = [library]
-    _native.package(Scene.of(scene)._native, Path(path), [Path(of) for of in library], name or Path(path).stem, list(columns))
+    _native.package(Scene.of(scene)._native, Path(path), [Path(of) for of in library], name or Path(path).stem, list(columns), fmi)
     return Path(path)

@@ -29,4 +29,5 @@ def package(
     library: str | PathLike[str] | Sequence[str | PathLike[str]] | None = None,
     name: str | None = None,
     columns: Sequence[str] = (),
+    fmi: int = 2,
 ) -> Path: ...

@@ -98,9 +98,9 @@ def write(path, mass, stiffness, translations, stations, *, weights=None, gyrosc
     Path(path).write_text(json.dumps(file))
 
 
-def package(file, path, library=None, name=None, columns=()):
-    """Writes the FMI 2.0 package of a shaft with its bearings from its file; returns its path. Options as of `roulement.package`."""
-    return write_package(Scene.load(file), path, library, name, columns)
+def package(file, path, library=None, name=None, columns=(), fmi=2):
+    """Writes the FMI 2.0 or, with `fmi=3`, 3.0 package of a shaft with its bearings from its file; returns its path. Options as of `roulement.package`."""
+    return write_package(Scene.load(file), path, library, name, columns, fmi)
 
 
 def write_ross(path, rotor, nodes, highest):

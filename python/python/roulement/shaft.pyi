@@ -32,5 +32,6 @@ def package(
     library: str | PathLike[str] | Sequence[str | PathLike[str]] | None = None,
     name: str | None = None,
     columns: Sequence[str] = (),
+    fmi: int = 2,
 ) -> Path: ...
 def write_ross(path: str | PathLike[str], rotor: Any, nodes: Sequence[int], highest: float) -> None: ...

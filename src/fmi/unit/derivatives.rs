@@ -6,7 +6,7 @@ use crate::interface::variables::{InputKind, Variable};
 use crate::scene::Level;
 use crate::simulation::Simulation;
 use crate::simulation::driven::{MachineInputs, MachineSnapshot};
-use crate::simulation::machine::MachineError;
+use crate::simulation::machine::{Machine, MachineError};
 use crate::simulation::system::Played;
 
 /// Sizes of the changes of inputs whose effects are compared: small against what bends the contact laws (an approach of
@@ -93,12 +93,7 @@ pub fn columns(
     inputs: &[usize],
 ) -> Outcome<Vec<Vec<f64>>> {
     let Unit { variables, machine, .. } = unit;
-    let failed = |why: MachineError| (Status::Error, format!("no directional derivatives here: {why}"));
-    // Equilibria know no duration.
-    let dynamic = unit.scene.solver().level == Level::Dynamic;
-    let duration = before.map(|before| machine.time() - before.time()).filter(|_| dynamic);
-    let changes = machine.bearings().map(|(_, bearing)| changes(bearing, duration)).reduce(Changes::smaller);
-    let Some(changes) = changes else { return error("there is no bearing") };
+    let changes = smallest_changes(unit, duration(unit, before))?;
     let rows = variables.rows();
     let (values, rates) = (variables.values(machine), variables.rates(machine));
     let moved = |index: usize, sign: f64| moved(&rows[index], values[index], sign, &changes);
@@ -109,13 +104,7 @@ pub fn columns(
     };
     let perturbations = both_ways(inputs, perturbed)?;
     let ends = match before {
-        Some(before) => {
-            let mut central = machine.clone();
-            if !(central.restore(before) && central.set_inputs(machine.inputs())) {
-                return error("the start of the last step is of another scene");
-            }
-            central.advance_perturbed(machine.time(), perturbations, played).map_err(failed)?
-        }
+        Some(before) => stepped(unit, before, perturbations, played)?,
         None => {
             let start = |inputs: MachineInputs| {
                 let mut central = machine.clone();
@@ -123,11 +112,71 @@ pub fn columns(
                 debug_assert!(fit, "they were made for this very machine");
                 central.initialise().map(|()| central)
             };
-            perturbations.into_iter().map(start).collect::<Result<Vec<_>, _>>().map_err(failed)?
+            perturbations.into_iter().map(start).collect::<Result<Vec<_>, _>>().map_err(|why| failed(&why))?
         }
     };
     let of: Vec<_> = ends.iter().map(|end| variables.values(end)).collect();
     Ok(differences(inputs, &of, |index| moved(index, 1.0) - moved(index, -1.0)))
+}
+
+/// Derivatives of all variables by the rates of some inputs, likewise; a start, which knows no rates, has none other than 0.
+///
+/// # Errors
+/// If they do not exist here.
+pub fn columns_of_rates(
+    unit: &Unit,
+    before: Option<&MachineSnapshot>,
+    played: &Played,
+    inputs: &[usize],
+) -> Outcome<Vec<Vec<f64>>> {
+    let Unit { variables, machine, .. } = unit;
+    let rows = variables.rows();
+    let Some((before, duration)) = before.zip(duration(unit, before)) else {
+        return Ok(vec![vec![0.0; rows.len()]; inputs.len()]);
+    };
+    let changes = smallest_changes(unit, Some(duration))?;
+    let (values, rates) = (variables.values(machine), variables.rates(machine));
+    // Such a rate changes its input over the step by as much as that may be changed by itself.
+    let moved = |index: usize, sign: f64| rates[index] + sign * changes.of(&rows[index]) / duration;
+    let perturbed = |index: usize, sign: f64| -> Outcome<MachineInputs> {
+        let mut rates = rates.clone();
+        rates[index] = moved(index, sign);
+        variables.inputs(&values, &rates, machine).or_else(|why| error(why.to_string()))
+    };
+    let ends = stepped(unit, before, both_ways(inputs, perturbed)?, played)?;
+    let of: Vec<_> = ends.iter().map(|end| variables.values(end)).collect();
+    Ok(differences(inputs, &of, |index| moved(index, 1.0) - moved(index, -1.0)))
+}
+
+fn failed(why: &MachineError) -> (Status, String) {
+    (Status::Error, format!("no directional derivatives here: {why}"))
+}
+
+/// \[s] duration of the step since a point; equilibria know none.
+fn duration(unit: &Unit, before: Option<&MachineSnapshot>) -> Option<f64> {
+    let dynamic = unit.scene.solver().level == Level::Dynamic;
+    before.map(|before| unit.machine.time() - before.time()).filter(|_| dynamic)
+}
+
+/// Changes that are small for all bearings.
+fn smallest_changes(unit: &Unit, duration: Option<f64>) -> Outcome<Changes> {
+    let each = unit.machine.bearings().map(|(_, bearing)| changes(bearing, duration));
+    each.reduce(Changes::smaller).map_or_else(|| error("there is no bearing"), Ok)
+}
+
+/// The machine after the step since a point under other inputs.
+fn stepped(
+    unit: &Unit,
+    before: &MachineSnapshot,
+    perturbations: Vec<MachineInputs>,
+    played: &Played,
+) -> Outcome<Vec<Machine>> {
+    let machine = &unit.machine;
+    let mut central = machine.clone();
+    if !(central.restore(before) && central.set_inputs(machine.inputs())) {
+        return error("the start of the last step is of another scene");
+    }
+    central.advance_perturbed(machine.time(), perturbations, played).map_err(|why| failed(&why))
 }
 
 /// A changed value of an input.

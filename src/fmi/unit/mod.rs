@@ -16,6 +16,7 @@ use crate::analysis::estimate;
 use crate::effects::estimate::missed;
 use crate::effects::frame::FrameSection;
 use crate::interface::contradiction::Contradiction;
+use crate::interface::references::References;
 use crate::interface::variables::{Causality, MachineGroup, MachineVariables, Variable};
 use crate::model::bodies::Race;
 use crate::scene::machine::MachineScene;
@@ -231,6 +232,21 @@ impl Unit {
             .map_err(|why: MachineError| (Status::Discard, why.to_string()))
     }
 
+    /// \[s] where the integrator's next step ends on the way to a time, if it succeeds; an equilibrium is one step.
+    pub fn next_point(&self, end: f64) -> f64 {
+        let time = self.time();
+        let dynamic = self.scene.solver().level == Level::Dynamic;
+        let control = self.machine.bearings().next().map(|(_, bearing)| bearing.state().control);
+        let step =
+            control.filter(|_| dynamic).map_or(f64::INFINITY, |control| control.step_within(end - time));
+        if step >= (end - time) * (1.0 - 1e-9) { end } else { time + step }
+    }
+
+    /// Sets the pose and the twist of races that are given to where they are now.
+    pub fn follow(&self, values: &mut [f64]) {
+        self.variables.follow(values, &self.machine);
+    }
+
     /// Warnings at its present time, a sentence each.
     pub fn alarms(&self, alarms: &mut Alarms) -> Vec<String> {
         alarms.step(&self.machine)
@@ -373,6 +389,22 @@ impl Unit {
         inputs: &[usize],
     ) -> Outcome<Vec<Vec<f64>>> {
         derivatives::columns(self, before, &self.played(played), inputs)
+    }
+
+    /// The same by the rate of every input that takes one, in columns by their references; those of others are empty. A start knows no rates.
+    ///
+    /// # Errors
+    /// As of [`Unit::derivatives`].
+    pub fn derivatives_by_rates(
+        &self,
+        before: Option<&MachineSnapshot>,
+        played: &[bool],
+    ) -> Outcome<Vec<Vec<f64>>> {
+        let rated: Vec<usize> = References::new(self.rows()).rates().map(|(_, row)| row).collect();
+        let found = derivatives::columns_of_rates(self, before, &self.played(played), &rated)?;
+        let mut columns = vec![vec![]; self.rows().len()];
+        rated.into_iter().zip(found).for_each(|(row, column)| columns[row] = column);
+        Ok(columns)
     }
 
     /// Tells what is simulated.

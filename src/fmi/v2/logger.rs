@@ -41,5 +41,22 @@ impl Logger {
 /// Where messages of an instance go.
 pub fn sink(callbacks: CallbackFunctions, instance: &str) -> Sink {
     let logger = Logger { callbacks, instance: plain(instance) };
-    Box::new(move |status, category, message| logger.write(status, category, message))
+    Box::new(move |status, category, message| logger.write(status, category, &format_of(message)))
+}
+
+/// Text as the format of a message, which an importer's `printf` shows as it is: percent signs, and hashes, which name a
+/// variable, stand twice (FMI 2.0.4, section 2.1.5).
+fn format_of(text: &str) -> CString {
+    plain(&text.replace('%', "%%").replace('#', "##"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percent_and_hash_stand_twice_in_formats_and_once_in_names() {
+        assert_eq!(format_of("100 % of #3\0").as_c_str(), c"100 %% of ##3 ");
+        assert_eq!(plain("50%\0#1").as_c_str(), c"50% #1");
+    }
 }

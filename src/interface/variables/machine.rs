@@ -160,6 +160,13 @@ impl MachineVariables {
         Ok(MachineInputs { shaft, bearings })
     }
 
+    /// Sets the pose and the twist of races that are given to where they are now: [`Variables::follow`].
+    pub fn follow(&self, values: &mut [f64], machine: &impl Parts) {
+        for (part, (_, bearing)) in self.bearings.iter().zip(machine.bearings()) {
+            part.variables.follow(&mut values[part.first..], bearing);
+        }
+    }
+
     /// Writes the parameters among the values of all rows into a scene.
     pub fn set_parameters(&self, scene: &mut MachineScene, values: &[f64]) {
         if let MachineScene::Shaft(scene) = scene {

@@ -292,6 +292,17 @@ impl Variables {
         self.rows.iter().map(rate).collect()
     }
 
+    /// Sets the pose and the twist of races that are given to where they are now, in the values of all rows.
+    pub fn follow(&self, values: &mut [f64], simulation: &Simulation) {
+        for (index, row) in self.inputs_with_references() {
+            let Source::Race(race, quantity, component) = &row.source else { continue };
+            // A prescribed spin is no pose: it holds.
+            if quantity.components.len() > 1 && self.pose_is_given(*race) {
+                values[index] = (quantity.read)(&simulation.race_output(*race), *component);
+            }
+        }
+    }
+
     /// A race whose pose is an input.
     pub fn pose_is_given(&self, race: Race) -> bool {
         self.inputs_with_references().any(|(_, row)| {

@@ -188,6 +188,11 @@ impl ShaftSource {
         }
     }
 
+    /// Is it a velocity that is given, whose rate may be given, too?
+    pub fn is_given_velocity(self) -> bool {
+        matches!(self, Self::Given(_, MotionPart::Rate) | Self::Flange(_, MotionPart::Rate))
+    }
+
     /// Writes a value and its rate [unit, unit/s] into inputs; nothing where it is an output.
     pub fn set(self, inputs: &mut ShaftInputs, value: f64, rate: f64) {
         match self {

@@ -3,19 +3,18 @@
 #![allow(clippy::missing_safety_doc)] // the contract is in the parent module
 
 use std::ffi::{c_char, c_int, c_void};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use super::guard;
-use crate::fmi::handles;
+use super::guarded;
+use crate::fmi::guard;
 use crate::fmi::instance::Instance;
 use crate::fmi::log::Log;
-use crate::fmi::outcome::{self, Outcome, error};
+use crate::fmi::outcome::error;
+use crate::fmi::pointers::{text, texts};
+use crate::fmi::resources;
+use crate::fmi::state_machine::Call;
+use crate::fmi::stay::stay_loaded;
 use crate::fmi::v2::logger::sink;
-use crate::fmi::v2::pointers::{list, text};
-use crate::fmi::v2::state_machine::Call;
-use crate::fmi::v2::stay::stay_loaded;
 use crate::fmi::v2::types::{Boolean, CallbackFunctions, Status};
-use crate::interface::model_description::LOG_CATEGORIES;
 
 /// `"default"`.
 #[unsafe(no_mangle)]
@@ -48,7 +47,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let (name, guid, location) = unsafe { (text(name), text(guid), text(resource_location)) };
     let name = name.unwrap_or_default();
     let log = |on| Log::new(sink(callbacks, &name), on);
-    let made = catch_unwind(AssertUnwindSafe(|| -> Outcome<Instance> {
+    guard::make(log, logging_on != 0, |log| {
         if fmu_type != 1 {
             return error("this package offers co-simulation only");
         }
@@ -58,29 +57,14 @@ pub unsafe extern "C" fn fmi2Instantiate(
         let (Some(guid), Some(location)) = (guid, location) else {
             return error("the guid or the resource location is missing");
         };
-        Instance::new(&guid, &location, log(logging_on != 0))
-    }));
-    match made {
-        Ok(Ok(instance)) => {
-            instance.log.write(outcome::Status::Ok, "instantiated");
-            handles::give(instance)
-        }
-        Ok(Err((status, why))) => {
-            log(true).write(status, &why);
-            std::ptr::null_mut()
-        }
-        Err(_) => {
-            log(true).write(outcome::Status::Fatal, "the model failed inside while it was instantiated");
-            std::ptr::null_mut()
-        }
-    }
+        Instance::new(&guid, &resources::path(&location)?, log)
+    })
 }
 
 /// Ends an instance; null is ignored, and so is one that has ended already.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2FreeInstance(component: *mut c_void) {
-    // A panic in a destructor must not cross either.
-    let _ = catch_unwind(AssertUnwindSafe(|| drop(handles::take::<Instance>(component))));
+    guard::free::<Instance>(component);
 }
 
 /// Switches the log.
@@ -91,17 +75,9 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     n: usize,
     categories: *const *const c_char,
 ) -> Status {
-    guard(component, Call::SetDebugLogging, |instance| {
+    guarded(component, Call::SetDebugLogging, |instance| {
         // SAFETY: the importer's contract.
-        let categories = unsafe { list(categories, n) }?.iter();
-        // SAFETY: the importer's contract.
-        let names: Vec<String> = categories.filter_map(|name| unsafe { text(*name) }).collect();
-        let known = |name: &String| LOG_CATEGORIES.iter().any(|(known, _)| known == name);
-        if let Some(unknown) = names.iter().find(|name| !known(name)) {
-            return error(format!("there is no log category {unknown}"));
-        }
-        instance.log.set(logging_on != 0, names);
-        Ok(())
+        instance.log.set(logging_on != 0, unsafe { texts(categories, n) }?)
     })
 }
 
@@ -115,7 +91,7 @@ pub extern "C" fn fmi2SetupExperiment(
     stop_time_defined: Boolean,
     stop_time: f64,
 ) -> Status {
-    guard(component, Call::SetupExperiment, |instance| {
+    guarded(component, Call::SetupExperiment, |instance| {
         instance.setup_experiment(start_time, (stop_time_defined != 0).then_some(stop_time))
     })
 }
@@ -123,7 +99,7 @@ pub extern "C" fn fmi2SetupExperiment(
 /// Begins initialization mode.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2EnterInitializationMode(component: *mut c_void) -> Status {
-    guard(component, Call::EnterInitializationMode, |instance| {
+    guarded(component, Call::EnterInitializationMode, |instance| {
         instance.enter_initialization();
         Ok(())
     })
@@ -132,13 +108,13 @@ pub extern "C" fn fmi2EnterInitializationMode(component: *mut c_void) -> Status 
 /// Starts from the inputs as set.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2ExitInitializationMode(component: *mut c_void) -> Status {
-    guard(component, Call::ExitInitializationMode, Instance::exit_initialization)
+    guarded(component, Call::ExitInitializationMode, Instance::exit_initialization)
 }
 
 /// Ends the simulation; results can still be read.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2Terminate(component: *mut c_void) -> Status {
-    guard(component, Call::Terminate, |instance| {
+    guarded(component, Call::Terminate, |instance| {
         instance.terminate();
         Ok(())
     })
@@ -147,7 +123,7 @@ pub extern "C" fn fmi2Terminate(component: *mut c_void) -> Status {
 /// Puts an instance back to how it was when freshly instantiated.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2Reset(component: *mut c_void) -> Status {
-    guard(component, Call::Reset, |instance| {
+    guarded(component, Call::Reset, |instance| {
         instance.reset();
         Ok(())
     })

@@ -11,38 +11,15 @@ mod steps;
 mod variables;
 
 use std::ffi::c_void;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use super::state_machine::{Call, after, allowed};
+use super::allowed::RULES;
 use super::types::Status;
-use crate::fmi::handles;
+use crate::fmi::guard::guard;
 use crate::fmi::instance::Instance;
-use crate::fmi::outcome::{self, Outcome, error};
+use crate::fmi::outcome::Outcome;
+use crate::fmi::state_machine::Call;
 
-/// Runs a call on an instance: handle, phase check, panic guard, log, status.
-fn guard(component: *mut c_void, call: Call, work: impl FnOnce(&mut Instance) -> Outcome) -> Status {
-    let guarded = |instance: &mut Instance| {
-        let outcome = catch_unwind(AssertUnwindSafe(|| {
-            let phase = instance.state.phase;
-            if !allowed(call, phase) {
-                return error(format!("{call:?} is not allowed in phase {phase:?}"));
-            }
-            work(instance)
-        }));
-        let status = match outcome {
-            Ok(Ok(())) => outcome::Status::Ok,
-            Ok(Err((status, why))) => {
-                instance.log.write(status, &why);
-                status
-            }
-            Err(_) => {
-                let why = format!("{call:?} failed inside; this is a fault of the model");
-                instance.log.write(outcome::Status::Fatal, &why);
-                outcome::Status::Fatal
-            }
-        };
-        instance.state.phase = after(call, status, instance.state.phase);
-        status.into()
-    };
-    handles::with(component, guarded).unwrap_or(Status::Error)
+/// Runs a call on an instance.
+fn guarded(component: *mut c_void, call: Call, work: impl FnOnce(&mut Instance) -> Outcome) -> Status {
+    guard(component, &RULES, call, work).into()
 }

@@ -4,10 +4,10 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
-use super::guard;
+use super::guarded;
 use crate::fmi::outcome::{self, Outcome};
-use crate::fmi::v2::pointers::{list, list_mut, place};
-use crate::fmi::v2::state_machine::Call;
+use crate::fmi::pointers::{list, list_mut, place};
+use crate::fmi::state_machine::Call;
 use crate::fmi::v2::types::{Boolean, Status};
 
 /// Changes of outputs for a change of inputs.
@@ -21,7 +21,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     known_changes: *const f64,
     unknown_changes: *mut f64,
 ) -> Status {
-    guard(component, Call::GetDirectionalDerivative, |instance| {
+    guarded(component, Call::GetDirectionalDerivative, |instance| {
         // SAFETY: the importer's contract.
         let (unknowns, knowns) = unsafe { (list(unknowns, n_unknowns)?, list(knowns, n_knowns)?) };
         // SAFETY: the importer's contract.
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     orders: *const c_int,
     values: *const f64,
 ) -> Status {
-    guard(component, Call::SetRealInputDerivatives, |instance| {
+    guarded(component, Call::SetRealInputDerivatives, |instance| {
         // SAFETY: the importer's contract.
         let (references, orders, values) =
             unsafe { (list(references, n)?, list(orders, n)?, list(values, n)?) };
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     orders: *const c_int,
     values: *mut f64,
 ) -> Status {
-    guard(component, Call::GetRealOutputDerivatives, |instance| {
+    guarded(component, Call::GetOutputDerivatives, |instance| {
         // SAFETY: the importer's contract.
         let (references, orders, values) =
             unsafe { (list(references, n)?, list(orders, n)?, list_mut(values, n)?) };
@@ -73,26 +73,26 @@ pub extern "C" fn fmi2DoStep(
     step: f64,
     _no_set_state_prior: Boolean,
 ) -> Status {
-    guard(component, Call::DoStep, |instance| instance.do_step(time, step))
+    guarded(component, Call::DoStep, |instance| instance.do_step(time, step))
 }
 
 /// Steps are synchronous: there is none to cancel.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2CancelStep(component: *mut c_void) -> Status {
-    guard(component, Call::CancelStep, |_| Ok(()))
+    guarded(component, Call::CancelStep, |_| Ok(()))
 }
 
 /// Status of an asynchronous step: there is none.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2GetStatus(component: *mut c_void, _kind: c_int, _value: *mut Status) -> Status {
-    guard(component, Call::GetStatus, |_| discard_status())
+    guarded(component, Call::GetStatus, |_| discard_status())
 }
 
 /// `fmi2LastSuccessfulTime`.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2GetRealStatus(component: *mut c_void, kind: c_int, value: Option<&mut f64>) -> Status {
     const LAST_SUCCESSFUL_TIME: c_int = 2;
-    guard(component, Call::GetStatus, |instance| {
+    guarded(component, Call::GetStatus, |instance| {
         let value = place(value, "the status")?;
         if kind != LAST_SUCCESSFUL_TIME {
             return discard_status();
@@ -105,7 +105,7 @@ pub extern "C" fn fmi2GetRealStatus(component: *mut c_void, kind: c_int, value: 
 /// There is no integer status.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi2GetIntegerStatus(component: *mut c_void, _kind: c_int, _value: *mut c_int) -> Status {
-    guard(component, Call::GetStatus, |_| discard_status())
+    guarded(component, Call::GetStatus, |_| discard_status())
 }
 
 /// `fmi2Terminated`: the model never ends a simulation by itself.
@@ -116,7 +116,7 @@ pub extern "C" fn fmi2GetBooleanStatus(
     value: Option<&mut Boolean>,
 ) -> Status {
     const TERMINATED: c_int = 3;
-    guard(component, Call::GetStatus, |_| {
+    guarded(component, Call::GetStatus, |_| {
         let value = place(value, "the status")?;
         if kind != TERMINATED {
             return discard_status();
@@ -133,7 +133,7 @@ pub extern "C" fn fmi2GetStringStatus(
     _kind: c_int,
     _value: *mut *const c_char,
 ) -> Status {
-    guard(component, Call::GetStatus, |_| discard_status())
+    guarded(component, Call::GetStatus, |_| discard_status())
 }
 
 fn discard_status() -> Outcome {

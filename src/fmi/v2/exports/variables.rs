@@ -4,10 +4,10 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
-use super::guard;
+use super::guarded;
 use crate::fmi::outcome::{Outcome, error};
-use crate::fmi::v2::pointers::{list, list_mut};
-use crate::fmi::v2::state_machine::Call;
+use crate::fmi::pointers::{list, list_mut};
+use crate::fmi::state_machine::Call;
 use crate::fmi::v2::types::{Boolean, Status};
 use crate::interface::variables::Kind;
 
@@ -19,7 +19,7 @@ pub unsafe extern "C" fn fmi2GetReal(
     n: usize,
     values: *mut f64,
 ) -> Status {
-    guard(component, Call::Get, |instance| {
+    guarded(component, Call::Get, |instance| {
         // SAFETY: the importer's contract.
         let (references, values) = unsafe { (list(references, n)?, list_mut(values, n)?) };
         instance.get(references, Kind::Real, values)
@@ -34,7 +34,7 @@ pub unsafe extern "C" fn fmi2GetInteger(
     n: usize,
     values: *mut c_int,
 ) -> Status {
-    guard(component, Call::Get, |instance| {
+    guarded(component, Call::Get, |instance| {
         // SAFETY: the importer's contract.
         let (references, results) = unsafe { (list(references, n)?, list_mut(values, n)?) };
         let mut values = vec![0.0; n];
@@ -55,7 +55,7 @@ pub extern "C" fn fmi2GetBoolean(
     n: usize,
     _values: *mut Boolean,
 ) -> Status {
-    guard(component, Call::Get, |_| none_of_type(n, "boolean"))
+    guarded(component, Call::Get, |_| none_of_type(n, "boolean"))
 }
 
 /// There are no string variables.
@@ -66,7 +66,7 @@ pub extern "C" fn fmi2GetString(
     n: usize,
     _values: *mut *const c_char,
 ) -> Status {
-    guard(component, Call::Get, |_| none_of_type(n, "string"))
+    guarded(component, Call::Get, |_| none_of_type(n, "string"))
 }
 
 fn none_of_type(n: usize, kind: &str) -> Outcome {
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     n: usize,
     values: *const f64,
 ) -> Status {
-    guard(component, Call::Set, |instance| {
+    guarded(component, Call::Set, |instance| {
         // SAFETY: the importer's contract.
         let (references, values) = unsafe { (list(references, n)?, list(values, n)?) };
         instance.set(references, Kind::Real, values)
@@ -96,7 +96,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     n: usize,
     _values: *const c_int,
 ) -> Status {
-    guard(component, Call::Set, |instance| {
+    guarded(component, Call::Set, |instance| {
         // SAFETY: the importer's contract.
         let references = unsafe { list(references, n) }?;
         instance.set(references, Kind::Integer, &vec![0.0; references.len()])
@@ -111,7 +111,7 @@ pub extern "C" fn fmi2SetBoolean(
     n: usize,
     _values: *const Boolean,
 ) -> Status {
-    guard(component, Call::Set, |_| none_of_type(n, "boolean"))
+    guarded(component, Call::Set, |_| none_of_type(n, "boolean"))
 }
 
 /// There are no string variables.
@@ -122,5 +122,5 @@ pub extern "C" fn fmi2SetString(
     n: usize,
     _values: *const *const c_char,
 ) -> Status {
-    guard(component, Call::Set, |_| none_of_type(n, "string"))
+    guarded(component, Call::Set, |_| none_of_type(n, "string"))
 }

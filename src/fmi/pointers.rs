@@ -52,6 +52,15 @@ pub unsafe fn text(pointer: *const c_char) -> Option<String> {
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
 }
 
+/// The texts of a list; null pointers among them are left out.
+///
+/// # Safety
+/// As of [`list`], and every pointer is null or that of a C string.
+pub unsafe fn texts(pointer: *const *const c_char, n: usize) -> Outcome<Vec<String>> {
+    // SAFETY: as the caller promises.
+    Ok(unsafe { list(pointer, n) }?.iter().filter_map(|one| unsafe { text(*one) }).collect())
+}
+
 /// A place for a result.
 ///
 /// # Errors
