@@ -121,7 +121,7 @@ fn step_of(point: Option<&Point>) -> String {
         Lever::FixedStep => format!(" with fixed steps of {}", point.label),
         Lever::Tolerance => format!(" with tolerance = {} and no other limit of the step", point.label),
         Lever::Method => {
-            let (method, tolerance) = point.label.split_once(", ").unwrap_or((&point.label, ""));
+            let (method, tolerance) = point.label.split_once(' ').unwrap_or((&point.label, ""));
             format!(" with method = \"{method}\", tolerance = {tolerance} and no other limit of the step")
         }
         Lever::StepCap => format!(" with max_step = \"{}\"", point.label),

@@ -299,7 +299,7 @@ pub fn numerical_settings(scene: &MachineScene) -> Vec<Setting> {
     let methods = others.flat_map(|&other| {
         let name: &str = other.into();
         TOLERANCES
-            .map(|tolerance| toleranced(Lever::Method, format!("{name}, {tolerance:e}"), tolerance, other))
+            .map(|tolerance| toleranced(Lever::Method, format!("{name} {tolerance:e}"), tolerance, other))
     });
     let caps = STEP_CAPS.iter().map(|&cap| {
         changed(Lever::StepCap, seconds(cap), &|s| {

@@ -238,7 +238,7 @@ fn what_accuracy_costs_on_a_shaft_is_measured() {
     assert!(numbers(&table["error over the promise [-]"][at..=at])[0] <= 1.0);
     let sentence =
         format!("shaft: default steps: {regret:.2} times the cost of the cheapest tolerance that keeps ");
-    assert_eq!(said.matches("default steps: ").count(), 1);
+    assert_eq!(said.matches("shaft: default steps: ").count(), 1);
     assert!(said.contains(&sentence), "{said}");
     // An importer that knows the load at the end of a step is nearer than one that knows it at the start.
     let (shown, errors) = (&table["setting"], &table["worst [-]"]);
