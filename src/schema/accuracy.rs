@@ -33,10 +33,8 @@ pub enum Follows {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "SolverKeys")]
 pub struct Solver {
-    /// Method of the time integration; `"hht"` where none is given, but for runs with an error goal of 1e-3 or less, which take the cheaper one.
+    /// Method of the time integration.
     pub method: Method,
-    /// Is the method given? Where it is not, an error goal may choose one.
-    pub method_given: bool,
     /// [-] HHT damping, in (0, 1/3]; 0.05 is the paper's.
     pub alpha_f: f64,
     /// [-] local error of a step over the ball diameter.
@@ -149,7 +147,6 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             method: Method::Hht,
-            method_given: false,
             alpha_f: 0.05,
             tolerance: 1e-6,
             unresolved: 0.0,
@@ -261,7 +258,7 @@ struct SolverKeys {
     accuracy: Option<Goal>,
     /// [-] error of the wrench that a goal by name has to keep: the cheapest one is taken; not with `accuracy`.
     wrench_error: Option<f64>,
-    method: Option<Method>,
+    method: Method,
     alpha_f: Option<f64>,
     tolerance: Option<f64>,
     initial_step: Option<Time>,
@@ -299,8 +296,7 @@ impl TryFrom<SolverKeys> for Solver {
             _ => Follows::Nothing,
         };
         Ok(Self {
-            method: keys.method.unwrap_or_default(),
-            method_given: keys.method.is_some(),
+            method: keys.method,
             alpha_f: keys.alpha_f.unwrap_or(goal.alpha_f),
             tolerance: keys.tolerance.unwrap_or(goal.tolerance),
             unresolved: goal.unresolved,

@@ -10,7 +10,7 @@ use roulement::scene::machine::MachineScene;
 use roulement::scene::{ErrorGoal, ErrorOf};
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Rows;
-use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, finer, for_goal, twin_of_coarser};
+use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, finer, twin_of_coarser};
 use roulement_cli::modes::warnings;
 use roulement_cli::report::results::{Choice, Window};
 use roulement_cli::report::tables::Tables;
@@ -101,7 +101,6 @@ pub fn simulate(
     rounds: u32,
     end_steps: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
-    let scene = &for_goal(scene);
     let machine = Machine::new(scene)?;
     if machine.shaft().is_some() && place.said != Said::Nothing {
         // It may take seconds.

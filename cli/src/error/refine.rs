@@ -2,7 +2,7 @@
 
 use roulement::scene::machine::MachineScene;
 
-use super::{Judgement, Rounds, Run, TWIN, for_goal};
+use super::{Judgement, Rounds, Run, TWIN};
 
 /// [-] runs of a scene that has an error goal, at most; as of `roulement run`.
 pub const MOST_ROUNDS: u32 = 6;
@@ -21,7 +21,7 @@ pub struct Refined<P> {
     pub rounds: Option<(Rounds, &'static str)>,
 }
 
-/// Plays a scene; with an error goal by the method that is cheapest for it, as often as that asks for. `play` is told whether its run may be the result.
+/// Plays a scene; with an error goal, as often as that asks for. `play` is told whether its run may be the result.
 ///
 /// # Errors
 /// Those of `play`.
@@ -29,7 +29,6 @@ pub fn refine<P: Compared, E>(
     scene: &MachineScene,
     mut play: impl FnMut(&MachineScene, bool) -> Result<P, E>,
 ) -> Result<Refined<P>, E> {
-    let scene = &for_goal(scene);
     let mut run = play(scene, true)?;
     let Some(goal) = scene.solver().goal else {
         return Ok(Refined { run, rounds: None });

@@ -3,14 +3,12 @@
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
-use roulement::scene::machine::MachineScene;
 use roulement::scene::{ErrorGoal, ErrorOf, Scene, Solver};
-use roulement::schema::Method;
 use roulement::simulation::Simulation;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
-use roulement_cli::error::{Course, Difference, Judgement, Lengths, Rounds, Run, Sample, for_goal, sizes};
+use roulement_cli::error::{Course, Difference, Judgement, Lengths, Rounds, Run, Sample, sizes};
 use roulement_cli::report::figures::Figures;
 use roulement_cli::report::means::{Blocks, Means};
 use roulement_cli::report::quantities::{COUNT, Parts, QUANTITIES, Watched, of_bearing};
@@ -447,31 +445,4 @@ fn invariant_where_nothing_is_said_means_of_large_slow_bearings_and_cages_keep_o
     // Chaotic: its power is known to the interval of a run of that length.
     let cage = Errors::of("rattling_cage");
     assert!(cage.means < 0.1, "{}", cage.means);
-}
-
-#[test]
-fn an_error_goal_takes_the_method_that_is_cheapest_for_it_where_none_is_given() {
-    let method = |scene: MachineScene| for_goal(&scene).solver().method;
-    let with = |solver: &str| short(&[("solver", solver)]).into();
-    assert_eq!(method(with("{ accuracy = { error = 1e-3 } }")), Method::Esdirk3);
-    assert_eq!(method(with("{ accuracy = { error = 1e-2 } }")), Method::Hht);
-    assert_eq!(method(with("{ tolerance = 1e-9 }")), Method::Hht);
-    assert_eq!(method(with("{ method = \"hht\", accuracy = { error = 1e-4 } }")), Method::Hht);
-    let goal = "[solver]\naccuracy = { error = 1e-4 }\n";
-    let shaft = |text: &str| MachineScene::parse(&format!("{text}\n{goal}")).unwrap();
-    let pinion = include_str!("../../../scenes/shafts/pinion.toml");
-    assert_eq!(method(shaft(pinion)), Method::Esdirk3);
-    // Edges of a spall, balls at even spacing, and bearings without states, which that method does not know.
-    let spalled = Scene::edited(
-        &short(&[("solver", "{ accuracy = { error = 1e-4 } }")]).source,
-        [(
-            "defect",
-            "[{ on = \"outer\", azimuth = 0.0, length = \"1 mm\", width = \"1 mm\", depth = \"5 um\" }]",
-        )],
-    );
-    assert_eq!(method(spalled.unwrap().into()), Method::Hht);
-    let apart = short(&[("solver", "{ accuracy = { error = 1e-4 } }"), ("effects.cage", "\"ideal\"")]);
-    assert_eq!(method(apart.into()), Method::Hht);
-    let resting = pinion.replacen("name = \"left\"", "name = \"left\"\nlevel = \"equilibrium\"", 1);
-    assert_eq!(method(shaft(&resting)), Method::Hht);
 }

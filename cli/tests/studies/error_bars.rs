@@ -8,7 +8,7 @@ use roulement::scene::machine::MachineScene;
 use roulement::scene::{ErrorGoal, ErrorOf};
 use roulement::simulation::machine::{Machine, MachineError};
 use roulement::simulation::play::{Rows, play_observed};
-use roulement_cli::error::{Compared, Difference, Refined, Rounds, Run, finer, for_goal, refine};
+use roulement_cli::error::{Compared, Difference, Refined, Rounds, Run, finer, refine};
 use roulement_cli::watch::Watch;
 
 use crate::random::Random;
@@ -166,7 +166,7 @@ fn study(seed: u64, count: u32) -> Found {
             left_out += 1;
             continue;
         };
-        let Ok(reference) = played(&finer(&for_goal(&scene), rounds.refinements() + 1)) else {
+        let Ok(reference) = played(&finer(&scene, rounds.refinements() + 1)) else {
             left_out += 1;
             continue;
         };
@@ -229,7 +229,7 @@ fn regression_bars_of_histories_of_two_runs_hold() {
     scene.change(|scene| scene.solver.goal = Some(ErrorGoal { error: goal, of: ErrorOf::All }));
     let Refined { run, rounds } = refine(&scene, |scene, _| played(scene)).unwrap();
     let (rounds, said) = rounds.unwrap();
-    let reference = played(&finer(&for_goal(&scene), rounds.refinements() + 1)).unwrap();
+    let reference = played(&finer(&scene, rounds.refinements() + 1)).unwrap();
     let mut found = Found::default();
     compare(&rounds, said == "met", &run.run, &reference.run, goal, &mut found);
     assert_eq!(said, "met");
