@@ -100,6 +100,8 @@ pub struct Settled {
     pub damping: f64,
     /// [-] the inner normal, from the groove's centre to the ball.
     pub normal: Vector2<f64>,
+    /// \[N] force on the ball that is left: 0 to rounding where the search came to its end.
+    pub unbalanced: f64,
 }
 
 /// Both contacts at a place.
@@ -273,6 +275,8 @@ impl Ball {
 
     fn settled(&self, place: Vector2<f64>, at: &Contacts, friction: [Vector2<f64>; 2]) -> Settled {
         let normal = at.normals[0];
+        let contacts = normal * at.loads[0] + at.normals[1] * at.loads[1];
+        let unbalanced = (Vector2::new(0.0, self.centrifugal) + friction[0] + friction[1] - contacts).norm();
         let damping = match (self.damping, at.loads[0] > 0.0) {
             (Damping::HuntCrossley(0.0), _) | (_, false) => 0.0,
             (law, true) => {
@@ -292,6 +296,7 @@ impl Ball {
             elastic: at.elastic,
             damping,
             normal,
+            unbalanced,
         }
     }
 

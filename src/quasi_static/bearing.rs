@@ -30,6 +30,8 @@ pub struct Rested {
     pub friction: [Vector2<f64>; 2],
     /// \[J] elastic energy.
     pub elastic: f64,
+    /// \[N] force on the ball that is left.
+    pub unbalanced: f64,
 }
 
 /// Motion of the inner ring as seen from the outer one, which does not spin in these axes.
@@ -199,6 +201,7 @@ impl Balls {
                 loads: settled.loads,
                 friction: settled.friction,
                 elastic: settled.elastic,
+                unbalanced: settled.unbalanced,
             };
         })
     }
@@ -218,6 +221,7 @@ impl Balls {
             loads: [0.0; 2],
             friction: [zero; 2],
             elastic: 0.0,
+            unbalanced: 0.0,
         };
         let mut rested = vec![fresh; self.count];
         for _ in 0..PLACING_ROUNDS {

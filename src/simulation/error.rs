@@ -68,6 +68,19 @@ pub enum SimulationError {
         /// Cause of the last failure.
         cause: &'static str,
     },
+    /// A ball of a bearing without states found no balance.
+    #[error(
+        "at {} s ball {ball} found no balance at level = \"equilibrium\": {unbalanced:.3e} N are left; give the bearing level = \"dynamic\"",
+        four(.time)
+    )]
+    OutOfBalance {
+        /// \[s] time.
+        time: f64,
+        /// Ball, counted from 1.
+        ball: usize,
+        /// \[N] force on the ball that is left.
+        unbalanced: f64,
+    },
     /// A contact is deeper than Hertz's theory reaches.
     #[error(
         "at {} s ball {ball} is pressed into the {race} race by {approach:.3e} m: more than {MAX_APPROACH} of its \

@@ -5,7 +5,7 @@ use std::ptr;
 use roulement::fmi::v2::Status;
 
 use crate::fmi2_abi::*;
-use crate::system::run;
+use crate::system::{get, run, set};
 
 const SHAFT: &str = include_str!("../../scenes/shafts/pinion.toml");
 
@@ -55,5 +55,49 @@ fn invariant_a_derivative_does_not_depend_on_what_else_is_asked_for() {
         fmi2FreeFMUstate(c, &mut saved);
         fmi2FreeInstance(c);
         fmi2FreeInstance(fresh);
+    }
+}
+
+#[test]
+fn invariant_derivatives_beside_bearings_without_states_are_differences() {
+    let level = |name: &str, text: &str| {
+        let own = format!("name = \"{name}\"\n");
+        text.replacen(&own, &format!("{own}level = \"equilibrium\"\n"), 1)
+    };
+    let (one, both) = (level("left", SHAFT), level("right", &level("left", SHAFT)));
+    for (name, text) in [("one", one), ("both", both)] {
+        let package = Package::of_system(&format!("without-states-{name}"), &text);
+        let c = package.start();
+        run(c, 0..4);
+        let mut saved = ptr::null_mut();
+        unsafe { assert_eq!(fmi2GetFMUstate(c, &mut saved), Status::Ok) };
+        let unknowns = ["mesh.displacement.y", "left.inner.force.z"];
+        for known in ["mesh.force.y", "mesh.force.z"] {
+            let of = |change: f64| {
+                unsafe { assert_eq!(fmi2SetFMUstate(c, saved), Status::Ok) };
+                let value = get(&package, c, known);
+                set(&package, c, known, value + change);
+                run(c, 4..5);
+                unknowns.map(|unknown| get(&package, c, unknown))
+            };
+            let (plus, minus) = (of(2.0), of(-2.0));
+            of(0.0);
+            let found = derivatives(&package, c, &[known])[0];
+            for (k, unknown) in unknowns.iter().enumerate() {
+                let difference = (plus[k] - minus[k]) / 4.0;
+                // By a force across the other axis next to nothing moves in one step.
+                let size = [1e-9, 1e-4][k];
+                let off = (found[k] - difference).abs();
+                assert!(
+                    off < 5e-3 * difference.abs().max(size),
+                    "{name} {unknown} by {known}: {} {difference}",
+                    found[k]
+                );
+            }
+        }
+        unsafe {
+            fmi2FreeFMUstate(c, &mut saved);
+            fmi2FreeInstance(c);
+        }
     }
 }

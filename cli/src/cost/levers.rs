@@ -4,11 +4,10 @@ use clap::ValueEnum;
 use strum::{IntoStaticStr, VariantArray};
 
 use roulement::scene::machine::MachineScene;
+use roulement::scene::system::MountedScene;
 use roulement::scene::units::Time;
-use roulement::scene::{Accuracy, CreepLaw, Drive, Scales, Scene, Solver};
+use roulement::scene::{self, Accuracy, CreepLaw, Drive, Scales, Scene, Solver};
 use roulement::schema::Method;
-
-use crate::error::takes_order_three;
 
 /// A setting that trades accuracy for speed; one curve in the plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, IntoStaticStr, ValueEnum, VariantArray)]
@@ -263,6 +262,14 @@ pub fn usual_settings(scene: &MachineScene) -> Vec<Setting> {
     std::iter::once(Setting::plain(Lever::Default, "default steps", usual)).chain(own).collect()
 }
 
+/// Does the method of order 3 know all of a scene? It knows neither balls at even spacing nor bearings without states.
+fn takes_order_three(scene: &MachineScene) -> bool {
+    let resting = |bearing: &MountedScene| bearing.level == scene::Level::Equilibrium;
+    let kept_apart = |(_, scene): (_, &Scene)| scene.effects.cage.is_ideal();
+    !scene.shaft().is_some_and(|shaft| shaft.bearings.iter().any(resting))
+        && !scene.bearings().into_iter().any(kept_apart)
+}
+
 /// Gives a bearing other settings of the integration, as where its scene is read.
 fn follow(scene: &mut Scene, solver: Solver) {
     let Scales { approach, frequency } = Scales::of(scene);
@@ -372,5 +379,24 @@ mod tests {
         }
         let [usual, said] = &usual_settings(&own)[..] else { panic!("it says its steps") };
         assert_eq!((usual.scene.solver(), said.scene.solver()), (nothing.solver(), own.solver()));
+    }
+
+    #[test]
+    fn the_other_method_is_tried_where_it_knows_the_scene() {
+        let tried = |scene: MachineScene| {
+            let settings = numerical_settings(&scene);
+            let of_method: Vec<_> =
+                settings.iter().filter(|setting| setting.lever == Lever::Method).collect();
+            assert!(of_method.iter().all(|setting| setting.scene.solver().method != scene.solver().method));
+            of_method.len()
+        };
+        let text = include_str!("../../../scenes/radial.toml");
+        assert_eq!(tried(Scene::parse(text).unwrap().into()), TOLERANCES.len());
+        let apart = Scene::edited(text, [("effects.cage", "\"ideal\"")]).unwrap();
+        assert_eq!(tried(apart.into()), 0);
+        let shaft = include_str!("../../../scenes/shafts/pinion.toml");
+        assert_eq!(tried(MachineScene::parse(shaft).unwrap()), TOLERANCES.len());
+        let resting = shaft.replacen("name = \"left\"", "name = \"left\"\nlevel = \"equilibrium\"", 1);
+        assert_eq!(tried(MachineScene::parse(&resting).unwrap()), 0);
     }
 }

@@ -6,13 +6,11 @@
 //! one of statistics.
 
 mod difference;
-mod method;
 mod refine;
 mod rounds;
 mod sample;
 
 pub use difference::Difference;
-pub use method::takes_order_three;
 pub use refine::{Compared, MOST_ROUNDS, Refined, finer, refine, twin_of_coarser};
 pub use rounds::{Judgement, Rounds, TWIN};
 pub use sample::{Course, Lengths, Run, Sample, sizes};

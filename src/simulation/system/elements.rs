@@ -22,7 +22,7 @@ use crate::model::bodies::{PerRace, Race};
 use crate::model::energies::Powers;
 use crate::model::state::{BodyState, State};
 use crate::model::structure::{Carrier, StructureState};
-use crate::quasi_static::bearing::Balls;
+use crate::quasi_static::bearing::{Balls, Rested};
 use crate::scene::Level;
 use crate::scene::system::SystemScene;
 
@@ -88,6 +88,10 @@ fn damping(bearing: &Simulation) -> Option<Damping> {
     matrix.column_mut(3).fill(0.0);
     Some(Damping { matrix, load, rate })
 }
+
+/// [-] force that may be left on a ball over its loads, and \[N] that which is nothing in any bearing: searches end at 1e-12 of the loads,
+/// and a millionth of them is beyond what loads are printed with.
+const UNBALANCED: [f64; 2] = [1e-6, 1e-6];
 
 /// States of the elements where a run starts.
 pub fn started(
@@ -275,6 +279,14 @@ impl Simulation {
         let deepest = MAX_APPROACH * 2.0 * bearing.ball.radius;
         let most = deepest * deepest.sqrt();
         let [least_angle, most_angle] = bearing.contact_angles();
+        // What is not a number is no balance.
+        let balanced = |ball: &Rested| {
+            ball.unbalanced <= UNBALANCED[1] + UNBALANCED[0] * (ball.loads[0] + ball.loads[1])
+        };
+        if let Some(index) = of.rested.iter().position(|ball| !balanced(ball)) {
+            let unbalanced = of.rested[index].unbalanced;
+            return Err(SimulationError::OutOfBalance { time, ball: index + 1, unbalanced });
+        }
         for race in Race::BOTH {
             let k = race as usize;
             let towards = |ball: usize| {
