@@ -22,6 +22,18 @@ impl BallMotion<f64> {
     }
 }
 
+impl<S: Scalar> BallMotion<S> {
+    /// Motion in other numbers.
+    #[inline(always)]
+    pub fn map<T: Scalar>(&self, number: impl Fn(S) -> T) -> BallMotion<T> {
+        BallMotion {
+            position: self.position.map(&number),
+            velocity: self.velocity.map(&number),
+            angular_velocity: self.angular_velocity.map(&number),
+        }
+    }
+}
+
 /// Motion of a race, in world axes.
 #[derive(Clone, Copy, Debug)]
 pub struct RaceMotion<S: Scalar> {

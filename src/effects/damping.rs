@@ -119,11 +119,11 @@ impl<'de> Deserialize<'de> for Given {
         let wrong = |why: ReadError| D::Error::custom(why.message());
         match &value {
             toml::Value::Table(table) if table.contains_key("retardation_time") => {
-                let section = reader::read::<RetardationSection>(value).map_err(wrong)?;
+                let section = reader::read::<RetardationSection>(&value).map_err(wrong)?;
                 Ok(Self::Retardation(section.retardation_time))
             }
-            toml::Value::Table(_) => reader::read(value).map(Self::Restitution).map_err(wrong),
-            _ => reader::read(value).map(Self::Factor).map_err(wrong),
+            toml::Value::Table(_) => reader::read(&value).map(Self::Restitution).map_err(wrong),
+            _ => reader::read(&value).map(Self::Factor).map_err(wrong),
         }
     }
 }

@@ -87,10 +87,9 @@ const SHAPE: &str = "a shape is a list of waves such as [{ order = 2, amplitude 
 
 impl<'de> Deserialize<'de> for Shape {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let value = toml::Value::deserialize(deserializer)?;
-        match value {
+        match &toml::Value::deserialize(deserializer)? {
             toml::Value::Array(waves) => {
-                let wave = |value: toml::Value| {
+                let wave = |value: &toml::Value| {
                     let wave: WaveSection =
                         reader::read(value).map_err(|why| D::Error::custom(why.message()))?;
                     Ok(Wave {
@@ -100,19 +99,19 @@ impl<'de> Deserialize<'de> for Shape {
                         axial: wave.direction == Along::Axial,
                     })
                 };
-                Ok(Self::Waves(waves.into_iter().map(wave).collect::<Result<_, D::Error>>()?))
+                Ok(Self::Waves(waves.iter().map(wave).collect::<Result<_, D::Error>>()?))
             }
-            toml::Value::Table(mut table) if table.len() == 1 => match table.remove("profile") {
-                Some(toml::Value::String(path)) => Ok(Self::File(path)),
+            toml::Value::Table(table) if table.len() == 1 => match table.get("profile") {
+                Some(toml::Value::String(path)) => Ok(Self::File(path.clone())),
                 Some(toml::Value::Array(rows)) => {
-                    let row = |row: toml::Value| match row {
-                        toml::Value::Array(row) => match <[toml::Value; 2]>::try_from(row) {
-                            Ok([radial, axial]) => Ok([length(radial)?, length(axial)?]),
-                            Err(_) => Err(D::Error::custom(SHAPE)),
+                    let row = |row: &toml::Value| match row {
+                        toml::Value::Array(row) => match row.as_slice() {
+                            [radial, axial] => Ok([length(radial)?, length(axial)?]),
+                            _ => Err(D::Error::custom(SHAPE)),
                         },
                         radial => Ok([length(radial)?, 0.0]),
                     };
-                    Ok(Self::Points(rows.into_iter().map(row).collect::<Result<_, D::Error>>()?))
+                    Ok(Self::Points(rows.iter().map(row).collect::<Result<_, D::Error>>()?))
                 }
                 _ => Err(D::Error::custom(SHAPE)),
             },
@@ -121,7 +120,7 @@ impl<'de> Deserialize<'de> for Shape {
     }
 }
 
-fn length<E: Error>(value: toml::Value) -> Result<f64, E> {
+fn length<E: Error>(value: &toml::Value) -> Result<f64, E> {
     Length::DIMENSION.read(value).map_err(E::custom)
 }
 

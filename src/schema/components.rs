@@ -63,7 +63,7 @@ impl<'de, Q: Quantity> Deserialize<'de> for Components<Q> {
             return Err(Error::custom(THREE));
         };
         let [x, y, z]: [toml::Value; 3] = values.try_into().map_err(|_| Error::custom(THREE))?;
-        let read = |value: toml::Value| schedule::of_value(value, &Q::DIMENSION).map_err(Error::custom);
+        let read = |value: toml::Value| schedule::of_value(&value, &Q::DIMENSION).map_err(Error::custom);
         Ok(Self([read(x)?, read(y)?, read(z)?], PhantomData))
     }
 }

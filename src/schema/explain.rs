@@ -72,7 +72,7 @@ pub fn table(text: &str) -> Result<Table, (SceneError, Option<usize>)> {
 /// # Errors
 /// In words of the scene, with the spot \[bytes].
 pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, (SceneError, Option<usize>)> {
-    reader::read(table(text)?).map_err(|why| {
+    reader::read(&table(text)?.into()).map_err(|why| {
         let key = why.key();
         let spot = if key.is_empty() { Some(0) } else { start_of(text, &key) };
         (SceneError::Format(in_words(&key, why.message())), spot)

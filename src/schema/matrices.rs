@@ -61,7 +61,7 @@ pub enum StationPlace {
 
 impl<'de> Deserialize<'de> for StationPlace {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let read = match toml::Value::deserialize(deserializer)? {
+        let read = match &toml::Value::deserialize(deserializer)? {
             place @ toml::Value::Array(_) => reader::read(place).map(Self::At),
             place => reader::read(place).map(Self::Along),
         };
@@ -120,9 +120,9 @@ impl Matrices {
                 let text = regular::named(&path, key)?;
                 let wrong = |why: &dyn std::fmt::Display| wrong(&format!("{file}: "), why.to_string());
                 let table: toml::Value = serde_json::from_str(&text).map_err(|why| wrong(&why))?;
-                reader::read(table).map_err(|why| wrong(&why))
+                reader::read(&table).map_err(|why| wrong(&why))
             }
-            table => reader::read(table.clone()).map_err(|why| wrong("", why.to_string())),
+            table => reader::read(table).map_err(|why| wrong("", why.to_string())),
         }
     }
 }

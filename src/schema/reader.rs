@@ -95,57 +95,49 @@ impl Error for ReadError {
 ///
 /// # Errors
 /// With the key.
-pub fn read<T: DeserializeOwned>(value: impl Into<Value>) -> Result<T, ReadError> {
-    T::deserialize(Reader(value.into()))
+pub fn read<T: DeserializeOwned>(value: &Value) -> Result<T, ReadError> {
+    T::deserialize(Reader(value))
 }
 
 /// Reads a value as a visitor wants it.
 ///
 /// # Errors
 /// With the key.
-pub fn read_with<'de, V: Visitor<'de>>(visitor: V, value: Value) -> Result<V::Value, ReadError> {
+pub fn read_with<'de, V: Visitor<'de>>(visitor: V, value: &Value) -> Result<V::Value, ReadError> {
     Reader(value).deserialize_any(visitor)
 }
 
-/// A value to be read.
-struct Reader(Value);
+/// A value to be read. Borrowed: of what is owned, each field of each section would have its own code to drop the rest.
+#[derive(Clone, Copy)]
+struct Reader<'a>(&'a Value);
 
-/// Kind of a value, for messages.
-fn kind(value: &Value) -> Unexpected<'_> {
-    match value {
-        Value::String(text) => Unexpected::Str(text),
-        Value::Integer(number) => Unexpected::Signed(*number),
-        Value::Float(number) => Unexpected::Float(*number),
-        Value::Boolean(is) => Unexpected::Bool(*is),
-        Value::Datetime(_) => Unexpected::Other("a date"),
-        Value::Array(_) => Unexpected::Seq,
-        Value::Table(_) => Unexpected::Map,
+impl Reader<'_> {
+    /// Kind of the value, for messages.
+    fn kind(&self) -> Unexpected<'_> {
+        match self.0 {
+            Value::String(text) => Unexpected::Str(text),
+            Value::Integer(number) => Unexpected::Signed(*number),
+            Value::Float(number) => Unexpected::Float(*number),
+            Value::Boolean(is) => Unexpected::Bool(*is),
+            Value::Datetime(_) => Unexpected::Other("a date"),
+            Value::Array(_) => Unexpected::Seq,
+            Value::Table(_) => Unexpected::Map,
+        }
     }
 }
 
-impl<'de> Deserializer<'de> for Reader {
+impl<'de> Deserializer<'de> for Reader<'_> {
     type Error = ReadError;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         match self.0 {
-            Value::String(text) => visitor.visit_string(text),
-            Value::Integer(number) => visitor.visit_i64(number),
-            Value::Float(number) => visitor.visit_f64(number),
-            Value::Boolean(is) => visitor.visit_bool(is),
-            Value::Datetime(_) => Err(ReadError::invalid_type(kind(&self.0), &visitor)),
-            Value::Array(entries) => {
-                let length = entries.len();
-                let mut entries = Entries { rest: entries.into_iter(), read: 0 };
-                let read = visitor.visit_seq(&mut entries)?;
-                match entries.rest.len() {
-                    0 => Ok(read),
-                    left => {
-                        let wanted = format!("an array of length {}", length - left);
-                        Err(ReadError::invalid_length(length, &wanted.as_str()))
-                    }
-                }
-            }
-            Value::Table(table) => visitor.visit_map(Keys::of(table)),
+            Value::String(text) => visitor.visit_str(text),
+            Value::Integer(number) => visitor.visit_i64(*number),
+            Value::Float(number) => visitor.visit_f64(*number),
+            Value::Boolean(is) => visitor.visit_bool(*is),
+            Value::Datetime(_) => Err(ReadError::invalid_type(self.kind(), &visitor)),
+            Value::Array(entries) => Entries::visit(entries, visitor),
+            Value::Table(table) => Keys::visit(table, visitor),
         }
     }
 
@@ -157,8 +149,8 @@ impl<'de> Deserializer<'de> for Reader {
         visitor: V,
     ) -> Result<V::Value, ReadError> {
         match self.0 {
-            Value::Table(table) => visitor.visit_map(Keys::of(table)),
-            other => Err(ReadError::invalid_type(kind(&other), &visitor)),
+            Value::Table(table) => Keys::visit(table, visitor),
+            _ => Err(ReadError::invalid_type(self.kind(), &visitor)),
         }
     }
 
@@ -182,11 +174,11 @@ impl<'de> Deserializer<'de> for Reader {
     ) -> Result<V::Value, ReadError> {
         match self.0 {
             Value::String(name) => visitor.visit_enum(Choice { name, content: None }),
-            Value::Table(table) if table.len() == 1 => match table.into_iter().next() {
-                Some((name, content)) => visitor.visit_enum(Choice { name, content: Some(content) }),
-                None => Err(ReadError::invalid_type(Unexpected::Map, &visitor)),
+            Value::Table(table) => match table.iter().next().filter(|_| table.len() == 1) {
+                Some((name, content)) => visitor.visit_enum(Choice { name, content: Some(Reader(content)) }),
+                None => Err(ReadError::invalid_type(self.kind(), &"string or table")),
             },
-            other => Err(ReadError::invalid_type(kind(&other), &"string or table")),
+            _ => Err(ReadError::invalid_type(self.kind(), &"string or table")),
         }
     }
 
@@ -197,23 +189,52 @@ impl<'de> Deserializer<'de> for Reader {
 }
 
 /// Entries of a list.
-struct Entries {
-    rest: std::vec::IntoIter<Value>,
+struct Entries<'a> {
+    rest: std::slice::Iter<'a, Value>,
     read: usize,
+    /// Is a section being read?
+    in_section: bool,
 }
 
-impl<'de> SeqAccess<'de> for &mut Entries {
+impl<'a> Entries<'a> {
+    fn visit<'de, V: Visitor<'de>>(entries: &'a [Value], visitor: V) -> Result<V::Value, ReadError> {
+        let mut entries = Entries { rest: entries.iter(), read: 0, in_section: false };
+        match visitor.visit_seq(&mut entries) {
+            Ok(read) => entries.at_its_end().map(|()| read),
+            Err(why) => Err(entries.place_of(why)),
+        }
+    }
+
+    #[inline(never)]
+    fn next(&mut self) -> Option<Reader<'a>> {
+        let value = self.rest.next();
+        self.in_section = value.is_some_and(Value::is_table);
+        self.read += usize::from(value.is_some());
+        value.map(Reader)
+    }
+
+    #[inline(never)]
+    fn at_its_end(&self) -> Result<(), ReadError> {
+        let wanted = format!("an array of length {}", self.read);
+        match self.rest.len() {
+            0 => Ok(()),
+            left => Err(ReadError::invalid_length(self.read + left, &wanted.as_str())),
+        }
+    }
+
+    /// Numbers of a list are told by the list's key.
+    #[cold]
+    #[inline(never)]
+    fn place_of(&self, why: ReadError) -> ReadError {
+        if self.in_section { why.inside(&format!("[{}]", self.read - 1)) } else { why }
+    }
+}
+
+impl<'de> SeqAccess<'de> for &mut Entries<'_> {
     type Error = ReadError;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, ReadError> {
-        let Some(value) = self.rest.next() else { return Ok(None) };
-        let (is_section, place) = (value.is_table(), self.read);
-        self.read += 1;
-        match seed.deserialize(Reader(value)) {
-            Ok(read) => Ok(Some(read)),
-            // Numbers of a list are told by the list's key.
-            Err(why) => Err(if is_section { why.inside(&format!("[{place}]")) } else { why }),
-        }
+        self.next().map(|value| seed.deserialize(value)).transpose()
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -222,65 +243,80 @@ impl<'de> SeqAccess<'de> for &mut Entries {
 }
 
 /// Keys of a section.
-struct Keys {
-    rest: map::IntoIter<String, Value>,
-    next: Option<(String, Value)>,
+struct Keys<'a> {
+    rest: map::Iter<'a, String, Value>,
+    /// That which is being read, until its value is.
+    current: Option<(&'a String, &'a Value)>,
 }
 
-impl Keys {
-    fn of(table: map::Map<String, Value>) -> Self {
-        Self { rest: table.into_iter(), next: None }
+impl<'a> Keys<'a> {
+    fn visit<'de, V: Visitor<'de>>(
+        table: &'a map::Map<String, Value>,
+        visitor: V,
+    ) -> Result<V::Value, ReadError> {
+        let mut keys = Keys { rest: table.iter(), current: None };
+        visitor.visit_map(&mut keys).map_err(|why| match keys.current {
+            Some((key, _)) => why.inside(key),
+            None => why,
+        })
+    }
+
+    #[inline(never)]
+    fn next(&mut self) -> Option<&'a str> {
+        self.current = self.rest.next();
+        self.current.map(|(key, _)| key.as_str())
     }
 }
 
-impl<'de> MapAccess<'de> for Keys {
+impl<'de> MapAccess<'de> for &mut Keys<'_> {
     type Error = ReadError;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, ReadError> {
-        self.next = self.rest.next();
-        let Some((key, _)) = &self.next else { return Ok(None) };
-        let name: StrDeserializer<'_, ReadError> = key.as_str().into_deserializer();
-        seed.deserialize(name).map(Some).map_err(|why| why.inside(key))
+        let Some(key) = self.next() else { return Ok(None) };
+        let name: StrDeserializer<'_, ReadError> = key.into_deserializer();
+        seed.deserialize(name).map(Some)
     }
 
     fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, ReadError> {
-        let Some((key, value)) = self.next.take() else {
+        let Some((_, value)) = self.current else {
             return Err(ReadError::custom("a value was asked for before its key"));
         };
-        seed.deserialize(Reader(value)).map_err(|why| why.inside(&key))
+        let read = seed.deserialize(Reader(value))?;
+        self.current = None;
+        Ok(read)
     }
 }
 
 /// One of several: its name, and what it has.
-struct Choice {
-    name: String,
-    content: Option<Value>,
+struct Choice<'a> {
+    name: &'a str,
+    content: Option<Reader<'a>>,
 }
 
-impl<'de> EnumAccess<'de> for Choice {
+impl<'a, 'de> EnumAccess<'de> for Choice<'a> {
     type Error = ReadError;
-    type Variant = Content;
+    type Variant = Content<'a>;
 
-    fn variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<(T::Value, Content), ReadError> {
-        let name: StrDeserializer<'_, ReadError> = self.name.as_str().into_deserializer();
+    fn variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<(T::Value, Content<'a>), ReadError> {
+        let name: StrDeserializer<'_, ReadError> = self.name.into_deserializer();
         Ok((seed.deserialize(name)?, Content(self.content)))
     }
 }
 
 /// Data of a choice beside its name.
-struct Content(Option<Value>);
+struct Content<'a>(Option<Reader<'a>>);
 
-impl Content {
-    fn value(self) -> Result<Reader, ReadError> {
-        self.0.map(Reader).ok_or_else(|| ReadError::custom("it needs a table"))
+impl<'a> Content<'a> {
+    fn value(self) -> Result<Reader<'a>, ReadError> {
+        self.0.ok_or_else(|| ReadError::custom("it needs a table"))
     }
 }
 
-impl<'de> VariantAccess<'de> for Content {
+impl<'de> VariantAccess<'de> for Content<'_> {
     type Error = ReadError;
 
     fn unit_variant(self) -> Result<(), ReadError> {
-        self.0.map_or(Ok(()), |value| Err(ReadError::invalid_type(kind(&value), &"its name alone")))
+        self.0.map_or(Ok(()), |value| Err(ReadError::invalid_type(value.kind(), &"its name alone")))
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, ReadError> {
@@ -315,7 +351,7 @@ mod tests {
         }
         let read = |text: &str| {
             let mut table: toml::Table = toml::from_str(text).unwrap();
-            read::<Section>(table.remove("section").unwrap())
+            read::<Section>(&table.remove("section").unwrap())
         };
         let section = read("section = { length = 1.0, sides = [2.0, 3.0] }");
         assert_eq!(section, Ok(Section { length: 1.0, sides: [2.0, 3.0] }));

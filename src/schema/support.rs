@@ -46,7 +46,7 @@ impl<T, R> Default for DirectionMatrix<T, R> {
 }
 
 /// An entry in SI: of a force by a translation, of a moment by a rotation, or of a coupling of both.
-fn entry<T, R, E: Error>(value: toml::Value, row: usize, column: usize) -> Result<f64, E>
+fn entry<T, R, E: Error>(value: &toml::Value, row: usize, column: usize) -> Result<f64, E>
 where
     T: Quantity,
     R: Quantity,
@@ -77,13 +77,13 @@ where
         if rows.iter().any(toml::Value::is_array) {
             for (i, row) in rows.into_iter().enumerate() {
                 for (k, value) in six(row)?.into_iter().enumerate() {
-                    matrix[(i, k)] = entry::<T, R, D::Error>(value, i, k)?;
+                    matrix[(i, k)] = entry::<T, R, D::Error>(&value, i, k)?;
                 }
             }
         } else {
             let mut diagonal = Vector6::zeros();
             for (i, value) in rows.into_iter().enumerate() {
-                diagonal[i] = entry::<T, R, D::Error>(value, i, i)?;
+                diagonal[i] = entry::<T, R, D::Error>(&value, i, i)?;
             }
             matrix = Matrix6::from_diagonal(&diagonal);
         }

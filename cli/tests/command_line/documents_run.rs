@@ -12,8 +12,8 @@ use toml::{Table, Value};
 
 use crate::common::{self, Scratch};
 
-/// Commands that take minutes: their arguments are read, they do not run.
-const LONG: [&str; 1] = ["cost"];
+/// Commands that take long, by words in them, and what is added: of the first the arguments are read alone, the second looks at two speeds.
+const LONG: [(&[&str], &[&str]); 2] = [(&["cost"], &["--help"]), (&["modes", "--up-to"], &["--speeds", "2"])];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -137,10 +137,12 @@ fn every_command_of_the_documents_runs() {
             if !["roulement", "target/release/roulement"].contains(&first.as_str()) {
                 continue;
             }
-            let long = LONG.contains(&arguments[0].as_str());
+            let added = LONG
+                .iter()
+                .filter(|(marks, _)| marks.iter().all(|mark| arguments.iter().any(|word| word == mark)));
             let output = Command::new(program)
                 .args(arguments)
-                .args(long.then_some("--help"))
+                .args(added.flat_map(|(_, more)| *more))
                 .current_dir(scratch.path(""))
                 .env("XDG_CACHE_HOME", scratch.path("cache"))
                 .output()

@@ -38,12 +38,7 @@ impl ContactModel<'_> {
             Path::General => None,
         };
         plain.unwrap_or_else(|| {
-            let ball = BallMotion {
-                position: ball.position.map(Dual::resized),
-                velocity: ball.velocity.map(Dual::resized),
-                angular_velocity: ball.angular_velocity.map(Dual::resized),
-            };
-            let forces: PairForces<D> = self.forces(&ball, &race.constant());
+            let forces: PairForces<D> = self.forces(&ball.map(Dual::resized), &race.constant());
             Wrench { force: forces.force.map(Dual::resized), moment: forces.moment.map(Dual::resized) }
         })
     }

@@ -108,10 +108,26 @@ impl ContactGroup {
             (_, Path::Plain) => roll_lanes::<false>,
             (_, Path::General) => roll_lanes::<true>,
         };
-        self.obliquely = evaluate(contact, race, balls, &mut self.contacts);
+        let Some(obliquely) = evaluate(contact, race, balls, &mut self.contacts) else {
+            return self.evaluate_one_by_one(contact, race, balls);
+        };
+        self.obliquely = obliquely;
         if self.obliquely && path == Path::Plain {
             // Seldom: what the plain path would hand over would have to be in memory.
             roll_lanes::<true>(contact, race, balls, &mut self.contacts);
+        }
+    }
+
+    /// That on processors without vectors of four numbers, for which nothing else is compiled: same bits.
+    #[inline(never)]
+    pub fn evaluate_one_by_one(
+        &mut self,
+        contact: &ContactModel<'_>,
+        race: &RaceMotion<f64>,
+        balls: &BallMotion<Lanes>,
+    ) {
+        for lane in 0..WIDTH {
+            self.set(lane, &contact.evaluate(&balls.map(|number| number.0[lane]), race));
         }
     }
 
@@ -179,8 +195,8 @@ impl ContactModel<'_> {
     }
 }
 
-/// Contacts with friction, by the plain or the general path; does one of them roll obliquely? Compiled twice, for processors with vectors of
-/// four numbers and for those without; the version is chosen at run time.
+/// Contacts with friction, by the plain or the general path; does one of them roll obliquely? Compiled for processors with vectors of four
+/// numbers, and for any without the feature of that name; the version is chosen at run time. None where it is not compiled for a processor.
 ///
 /// Arguments and result lie in memory lane by lane, because compilers vectorise from the stores backwards.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
@@ -189,10 +205,14 @@ fn roll_lanes<const GENERAL: bool>(
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
-) -> bool {
+) -> Option<bool> {
+    #[cfg(feature = "vectors")]
+    if multiversion::target::target_cfg_f!(all(target_arch = "x86_64", not(target_feature = "avx2"))) {
+        return None;
+    }
     let (rolling, oblique) = contact.rolling::<_, GENERAL>(balls, &race.constant());
     *contacts = rolling;
-    oblique
+    Some(oblique)
 }
 
 /// Contacts without friction, alike.
@@ -202,7 +222,11 @@ fn press_lanes<const GENERAL: bool>(
     race: &RaceMotion<f64>,
     balls: &BallMotion<Lanes>,
     contacts: &mut BallRaceContact<Lanes>,
-) -> bool {
+) -> Option<bool> {
+    #[cfg(feature = "vectors")]
+    if multiversion::target::target_cfg_f!(all(target_arch = "x86_64", not(target_feature = "avx2"))) {
+        return None;
+    }
     *contacts = contact.pressed::<_, GENERAL>(balls, &race.constant());
-    false
+    Some(false)
 }

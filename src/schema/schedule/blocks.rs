@@ -66,7 +66,7 @@ pub fn is_block(table: &Table) -> bool {
 /// Those of the deserializer; also an empty table, times that do not grow, and building blocks with keys or numbers that are
 /// not allowed.
 pub fn deserialize<'de, Q: Quantity, D: Deserializer<'de>>(deserializer: D) -> Result<Schedule, D::Error> {
-    of_value(Value::deserialize(deserializer)?, &Q::DIMENSION).map_err(D::Error::custom)
+    of_value(&Value::deserialize(deserializer)?, &Q::DIMENSION).map_err(D::Error::custom)
 }
 
 /// A schedule that may be left out.
@@ -83,7 +83,7 @@ pub(in crate::schema) fn some_schedule<'de, Q: Quantity, D: Deserializer<'de>>(
 ///
 /// # Errors
 /// One sentence.
-pub fn of_value(value: Value, of: &'static Dimension) -> Result<Schedule, String> {
+pub fn of_value(value: &Value, of: &'static Dimension) -> Result<Schedule, String> {
     match value {
         Value::Array(rows) => points(rows, |value| of.read(value)).map(Schedule::Table),
         Value::Table(table) => block(table, of),
@@ -92,13 +92,10 @@ pub fn of_value(value: Value, of: &'static Dimension) -> Result<Schedule, String
 }
 
 /// Points of a table whose values are read in some way.
-fn points(rows: Vec<Value>, read: impl Fn(Value) -> Result<f64, String>) -> Result<Vec<(f64, f64)>, String> {
+fn points(rows: &[Value], read: impl Fn(&Value) -> Result<f64, String>) -> Result<Vec<(f64, f64)>, String> {
     let mut points: Vec<(f64, f64)> = Vec::with_capacity(rows.len());
     for row in rows {
-        let Value::Array(mut row) = row else {
-            return Err(PAIRS.to_string());
-        };
-        let (Some(value), Some(time), true) = (row.pop(), row.pop(), row.is_empty()) else {
+        let Some([time, value]) = row.as_array().map(Vec::as_slice) else {
             return Err(PAIRS.to_string());
         };
         let time = allowed("time", Time::DIMENSION.read(time)?, TIME)?;
@@ -115,21 +112,21 @@ fn allowed(key: &str, value: f64, range: Range) -> Result<f64, String> {
     range.check(key, value).map(|()| value).map_err(|why| why.to_string())
 }
 
-/// The keys of a building block, taken out one by one.
-struct Keys {
+/// The keys of a building block.
+struct Keys<'a> {
     name: &'static str,
-    table: Table,
+    table: &'a Table,
 }
 
-impl Keys {
+impl Keys<'_> {
     /// A value of a key, if it is given.
-    fn get(&mut self, key: &str, of: &'static Dimension) -> Result<Option<f64>, String> {
-        let Some(value) = self.table.remove(key) else { return Ok(None) };
+    fn get(&self, key: &str, of: &'static Dimension) -> Result<Option<f64>, String> {
+        let Some(value) = self.table.get(key) else { return Ok(None) };
         of.read(value).map(Some).map_err(|why| format!("{key}: {why}"))
     }
 
     /// A number of a key with its range, if it is given.
-    fn number<Q: Quantity>(&mut self, key: &str, range: Range) -> Result<Option<f64>, String> {
+    fn number<Q: Quantity>(&self, key: &str, range: Range) -> Result<Option<f64>, String> {
         self.get(key, &Q::DIMENSION)?.map(|value| allowed(key, value, range)).transpose()
     }
 
@@ -139,27 +136,24 @@ impl Keys {
     }
 
     /// Two values of a key.
-    fn pair(&mut self, key: &str, of: &'static Dimension) -> Result<[f64; 2], String> {
-        let values = match self.table.remove(key) {
-            Some(Value::Array(values)) => <[Value; 2]>::try_from(values).ok(),
-            _ => None,
+    fn pair(&self, key: &str, of: &'static Dimension) -> Result<[f64; 2], String> {
+        let values = self.table.get(key).and_then(Value::as_array);
+        let Some([before, after]) = values.map(Vec::as_slice) else {
+            return Err(format!("{key} is a list of two values, before and after, such as {key} = [0, 1]"));
         };
-        let [before, after] = values.ok_or_else(|| {
-            format!("{key} is a list of two values, before and after, such as {key} = [0, 1]")
-        })?;
         let read = |value| of.read(value).map_err(|why| format!("{key}: {why}"));
         Ok([read(before)?, read(after)?])
     }
 }
 
 /// Reads a building block.
-fn block(table: Table, of: &'static Dimension) -> Result<Schedule, String> {
+fn block(table: &Table, of: &'static Dimension) -> Result<Schedule, String> {
     let kind = KINDS.iter().find(|kind| kind.marks.iter().any(|mark| table.contains_key(*mark)));
     let kind = kind.ok_or_else(|| BLOCKS.to_string())?;
     if let Some(key) = table.keys().find(|key| !kind.keys.contains(&key.as_str())) {
         return Err(format!("{key} is no key of {}, which has {}", kind.name, kind.keys.join(", ")));
     }
-    let mut keys = Keys { name: kind.name, table };
+    let keys = Keys { name: kind.name, table };
     match kind.marks[0] {
         "ramp" => {
             let [before, after] = keys.pair("ramp", of)?;
@@ -190,15 +184,15 @@ fn block(table: Table, of: &'static Dimension) -> Result<Schedule, String> {
                 begin: keys.number::<Time>("begin", TIME)?,
             }))
         }
-        "table" => table_with_unit(&mut keys, of),
+        "table" => table_with_unit(&keys, of),
         "sum" => {
-            let Some(Value::Array(values)) = keys.table.remove("sum") else {
+            let Some(Value::Array(values)) = keys.table.get("sum") else {
                 return Err("sum is a list of values over time".to_string());
             };
-            let read = |(place, value): (usize, Value)| {
+            let read = |(place, value): (usize, &Value)| {
                 of_value(value, of).map_err(|why| format!("sum[{place}]: {why}"))
             };
-            let parts = values.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
+            let parts = values.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
             sum(parts)
         }
         _ => Err("the file was not read: it needs time and value, the names of its columns".to_string()),
@@ -206,23 +200,23 @@ fn block(table: Table, of: &'static Dimension) -> Result<Schedule, String> {
 }
 
 /// A table with one unit for all values, a factor and an offset.
-fn table_with_unit(keys: &mut Keys, of: &'static Dimension) -> Result<Schedule, String> {
+fn table_with_unit(keys: &Keys<'_>, of: &'static Dimension) -> Result<Schedule, String> {
     let scale = keys.number::<Ratio>("scale", SCALE)?.unwrap_or(1.0);
     let offset = keys.get("offset", of)?.unwrap_or(0.0);
-    let source = keys.table.remove("source").and_then(|source| source.as_str().map(str::to_string));
-    let from = |why: String| source.as_ref().map_or(why.clone(), |source| format!("{source}: {why}"));
-    let Some(Value::Array(rows)) = keys.table.remove("table") else {
+    let source = keys.table.get("source").and_then(Value::as_str);
+    let from = |why: String| source.map_or(why.clone(), |source| format!("{source}: {why}"));
+    let Some(Value::Array(rows)) = keys.table.get("table") else {
         return Err(PAIRS.to_string());
     };
-    let mut points = match keys.table.remove("unit") {
+    let mut points = match keys.table.get("unit") {
         None => points(rows, |value| of.read(value)),
         Some(Value::String(written)) => {
             let unit: Unit = of
                 .unit(written.trim())
                 .map_err(|why| from(format!("unit = \"{written}\" is not that of {}: {why}", of.name)))?;
             points(rows, |value| match value {
-                Value::Float(number) => Ok(unit.si(number)),
-                Value::Integer(number) => Ok(unit.si(number as f64)),
+                Value::Float(number) => Ok(unit.si(*number)),
+                Value::Integer(number) => Ok(unit.si(*number as f64)),
                 value => Err(format!("{value}: values of a table with a unit are numbers")),
             })
         }

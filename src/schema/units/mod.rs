@@ -67,7 +67,7 @@ impl Dimension {
     ///
     /// # Errors
     /// One sentence.
-    pub fn read(&'static self, value: toml::Value) -> Result<f64, String> {
+    pub fn read(&'static self, value: &toml::Value) -> Result<f64, String> {
         reader::read_with(Written(self), value).map_err(|why| why.message().to_string())
     }
 

@@ -47,9 +47,14 @@ fn invariant_four_contacts_at_a_time_have_the_bits_of_one() {
             // With the vectors that this processor has.
             for count in 1..=WIDTH {
                 let mut together = ContactGroup::filled(&alone[3]);
-                together.evaluate(&contact, &race_motion, &BallMotion::of_balls(&motions[..count]));
+                let balls = BallMotion::of_balls(&motions[..count]);
+                together.evaluate(&contact, &race_motion, &balls);
+                // And where it has none.
+                let mut one_by_one = ContactGroup::filled(&alone[3]);
+                one_by_one.evaluate_one_by_one(&contact, &race_motion, &balls);
                 for (lane, alone) in alone[..count].iter().enumerate() {
                     assert_eq!(together.contact(lane), *alone, "{name}");
+                    assert_eq!(one_by_one.contact(lane), *alone, "{name}");
                 }
             }
             // Where none of them touches, costly laws are not asked: with the signs of beside one that does.
