@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::numerics::scalar::{Scalar, constant_vector};
+use crate::numerics::scalar::Scalar;
 
 /// Motion of a ball, in world axes.
 #[derive(Clone, Copy, Debug)]
@@ -70,19 +70,25 @@ impl<S: Scalar> RaceMotion<S> {
         let still = Vector3::from_element(S::zero());
         Self { position, axis, across, velocity: still, angular_velocity: still }
     }
+
+    /// Motion in other numbers.
+    #[inline(always)]
+    pub fn map<T: Scalar>(&self, number: impl Fn(S) -> T) -> RaceMotion<T> {
+        RaceMotion {
+            position: self.position.map(&number),
+            axis: self.axis.map(&number),
+            across: self.across,
+            velocity: self.velocity.map(&number),
+            angular_velocity: self.angular_velocity.map(&number),
+        }
+    }
 }
 
 impl RaceMotion<f64> {
     /// Motion as numbers that could have derivatives, or one for each lane.
     #[inline(always)]
     pub fn constant<S: Scalar>(&self) -> RaceMotion<S> {
-        RaceMotion {
-            position: constant_vector(&self.position),
-            axis: constant_vector(&self.axis),
-            across: self.across,
-            velocity: constant_vector(&self.velocity),
-            angular_velocity: constant_vector(&self.angular_velocity),
-        }
+        self.map(S::constant)
     }
 }
 
@@ -99,14 +105,22 @@ pub struct BodyMotion<S: Scalar> {
     pub angular_velocity: Vector3<S>,
 }
 
+impl<S: Scalar> BodyMotion<S> {
+    /// Motion in other numbers.
+    #[inline(always)]
+    pub fn map<T: Scalar>(&self, number: impl Fn(S) -> T) -> BodyMotion<T> {
+        BodyMotion {
+            position: self.position.map(&number),
+            axes: self.axes.each_ref().map(|axis| axis.map(&number)),
+            velocity: self.velocity.map(&number),
+            angular_velocity: self.angular_velocity.map(&number),
+        }
+    }
+}
+
 impl BodyMotion<f64> {
     /// Motion without derivatives, as numbers that could have some.
     pub fn constant<S: Scalar>(&self) -> BodyMotion<S> {
-        BodyMotion {
-            position: constant_vector(&self.position),
-            axes: self.axes.each_ref().map(constant_vector),
-            velocity: constant_vector(&self.velocity),
-            angular_velocity: constant_vector(&self.angular_velocity),
-        }
+        self.map(S::constant)
     }
 }

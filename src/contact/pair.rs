@@ -41,6 +41,21 @@ impl<S: Scalar> PairForces<S> {
             damping_power: zero,
         }
     }
+
+    /// Forces in other numbers.
+    #[inline(always)]
+    pub fn map<T: Scalar>(&self, number: impl Fn(S) -> T) -> PairForces<T> {
+        PairForces {
+            approach: number(self.approach),
+            load: number(self.load),
+            stiffness: number(self.stiffness),
+            force: self.force.map(&number),
+            moment: self.moment.map(&number),
+            other_moment: self.other_moment.map(&number),
+            friction_power: number(self.friction_power),
+            damping_power: number(self.damping_power),
+        }
+    }
 }
 
 impl PairForces {

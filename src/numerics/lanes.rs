@@ -61,6 +61,15 @@ impl Lanes {
 }
 
 impl Scalar for Lanes {
+    type Apart = Self;
+    #[inline(always)]
+    fn apart(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn back(apart: Self) -> Self {
+        apart
+    }
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self([value; WIDTH])

@@ -1,6 +1,7 @@
 //! Numerical methods that know nothing of bearings: numbers with derivatives, rigid-body motion, Newton's method, HHT steps.
 
 pub mod arrowhead;
+pub mod called;
 pub mod condensed;
 pub mod eigen;
 pub mod elementary;

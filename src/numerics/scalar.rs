@@ -5,6 +5,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use nalgebra::Vector3;
 
+use super::called::Called;
 use super::lanes::Lanes;
 
 /// Arithmetic of the contact kernel. It has no branches, so that vectors of several numbers can implement it.
@@ -25,6 +26,15 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
 {
+    /// The same number for code that runs seldom: smaller to compile, same bits.
+    type Apart: Scalar;
+
+    /// As such a number.
+    fn apart(self) -> Self::Apart;
+
+    /// From such a number.
+    fn back(apart: Self::Apart) -> Self;
+
     /// A constant: all derivatives are zero.
     fn constant(value: f64) -> Self;
 
@@ -227,6 +237,15 @@ pub fn within_limit<S: Scalar>(x: S, y: S) -> [S; 2] {
 }
 
 impl Scalar for f64 {
+    type Apart = Self;
+    #[inline(always)]
+    fn apart(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn back(apart: Self) -> Self {
+        apart
+    }
     #[inline(always)]
     fn constant(value: f64) -> Self {
         value
@@ -332,6 +351,15 @@ impl<const N: usize> Single for Dual<N> {
 }
 
 impl<const N: usize> Scalar for Dual<N> {
+    type Apart = Called<N>;
+    #[inline(always)]
+    fn apart(self) -> Called<N> {
+        Called(self)
+    }
+    #[inline(always)]
+    fn back(apart: Called<N>) -> Self {
+        apart.0
+    }
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value, derivatives: [0.0; N] }

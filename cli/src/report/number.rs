@@ -72,7 +72,7 @@ mod tests {
         let powers = (-330..310).map(|power| 10f64.powi(power));
         // Every exponent with a mantissa that is different each time (a congruential generator, Knuth).
         let mut bits = 1u64;
-        let random = (0..200_000).map(|_| {
+        let random = (0..40_000).map(|_| {
             bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             f64::from_bits(bits ^ bits >> 29)
         });

@@ -86,7 +86,11 @@ impl<S: Scalar> GrooveContact<S> {
             contact.approach += larger;
         }
         if surface.has_spalls() {
-            lean = contact.drop_into(surface, offset, race, &shift.unwrap_or_else(Shift::none));
+            let mut apart = contact.map(S::apart);
+            let shift = shift.unwrap_or_else(Shift::none).map(S::apart);
+            let dropped = apart.drop_into(surface, &offset.map(S::apart), &race.map(S::apart), &shift);
+            contact = apart.map(S::back);
+            lean = Lean { gain: S::back(dropped.gain), turning: dropped.turning.map(|by| by.map(S::back)) };
         }
         (contact, lean)
     }
@@ -210,6 +214,12 @@ impl<S: Scalar> GrooveContact<S> {
 }
 
 impl<S: Scalar> GrooveContact<S> {
+    /// The same in other numbers.
+    #[inline(always)]
+    fn map<T: Scalar>(&self, number: impl Fn(S) -> T) -> GrooveContact<T> {
+        self.zip_with(self, |own, _| number(own))
+    }
+
     /// Number by number from two contacts.
     #[inline(always)]
     pub fn zip_with<U: Scalar, T: Scalar>(

@@ -24,6 +24,16 @@ impl<S: Scalar> Shift<S> {
         Self { radial: S::zero(), radial_slope: S::zero(), axial: S::zero(), axial_slope: S::zero() }
     }
 
+    /// The same in other numbers.
+    pub(super) fn map<T: Scalar>(&self, number: impl Fn(S) -> T) -> Shift<T> {
+        Shift {
+            radial: number(self.radial),
+            radial_slope: number(self.radial_slope),
+            axial: number(self.axial),
+            axial_slope: number(self.axial_slope),
+        }
+    }
+
     /// Change of the angle of the contact, in radians times its distance from the groove's centre, along the circumference.
     #[inline(always)]
     pub(super) fn turn(&self, cos: S, sin: S) -> S {

@@ -93,13 +93,14 @@ impl LandModel {
         if oil <= 0.0 {
             return touching;
         }
-        Some(self.in_oil(cage, race, position, oil, touching.unwrap_or_else(PairForces::none)))
+        let dry = touching.unwrap_or_else(PairForces::none).map(S::apart);
+        Some(self.in_oil(&cage.map(S::apart), &race.map(S::apart), position, oil, dry).map(S::back))
     }
 
     /// Forces of surfaces that touch, with those of the film between them.
     #[cold]
     #[inline(never)]
-    fn in_oil<S: Single>(
+    fn in_oil<S: Scalar>(
         &self,
         cage: &BodyMotion<S>,
         race: &RaceMotion<S>,

@@ -122,13 +122,14 @@ impl PocketModel {
         if oil <= 0.0 || self.sphere_circle.is_some() {
             return touching;
         }
-        Some(self.in_oil(ball, cage, direction, oil, touching.unwrap_or_else(PairForces::none)))
+        let dry = touching.unwrap_or_else(PairForces::none).map(S::apart);
+        Some(self.in_oil(&ball.map(S::apart), &cage.map(S::apart), direction, oil, dry).map(S::back))
     }
 
     /// Forces of surfaces that touch, with those of the film between them.
     #[cold]
     #[inline(never)]
-    fn in_oil<S: Single>(
+    fn in_oil<S: Scalar>(
         &self,
         ball: &BallMotion<S>,
         cage: &BodyMotion<S>,
