@@ -217,6 +217,30 @@ fn parts_of(word: &str) -> (Vec<(&'static str, Part)>, &str) {
     }
 }
 
+/// Kind, number and clearance of a cylindrical roller bearing of one row; none where a name is of something else.
+pub(super) fn rollers(name: &str) -> Option<(String, String, Clearance)> {
+    let upper = name.to_ascii_uppercase();
+    let mut words = upper
+        .split([' ', '-', '_', ',', '.', '+', '/'])
+        .filter(|word| !word.is_empty() && !MAKERS.contains(word))
+        .peekable();
+    let mut prefix = String::new();
+    // The kind may stand apart, as in "NU 206".
+    while words.peek()?.chars().all(|sign| sign.is_ascii_alphabetic()) {
+        prefix += words.next()?;
+    }
+    let head = Head::of(words.next()?)?;
+    prefix += &head.prefix;
+    let parts = std::iter::once(head.rest.as_str()).chain(words).flat_map(|word| parts_of(word).0);
+    let class = parts.into_iter().find_map(|(_, part)| match part {
+        Part::Class(class) => Some(class),
+        Part::Hybrid | Part::Other(_) => None,
+    });
+    ["N", "NU", "NJ", "NUP"]
+        .contains(&prefix.as_str())
+        .then(|| (prefix, head.number, class.unwrap_or_default()))
+}
+
 /// Looks a designation up.
 ///
 /// # Errors

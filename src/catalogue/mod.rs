@@ -28,6 +28,7 @@ mod error;
 mod estimate;
 mod request;
 mod rings;
+mod rollers;
 mod table;
 mod text;
 
@@ -36,6 +37,7 @@ pub use error::CatalogueError;
 pub use estimate::{Candidate, STEEL_OF_ISO_76};
 pub use request::{Cage, Request};
 pub use rings::Ring;
+pub use rollers::rollers_of;
 pub use table::{SOURCE, table};
 
 /// A row of the table of common sizes.

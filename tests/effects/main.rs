@@ -17,6 +17,7 @@ mod heat;
 mod heat_balance;
 #[path = "../common/kernel.rs"]
 mod kernel;
+mod line_contact;
 mod list;
 mod losses;
 mod means;

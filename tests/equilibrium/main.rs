@@ -11,6 +11,7 @@ mod mechanics;
 #[path = "../common/reference.rs"]
 mod reference;
 mod reference_cases;
+mod rollers;
 #[path = "../common/scenes.rs"]
 mod scenes;
 mod thrust_bearing;

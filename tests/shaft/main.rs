@@ -20,6 +20,7 @@ mod outer_wrench;
 mod planets;
 mod quasi_static;
 mod reference;
+mod rollers;
 mod seats;
 mod several;
 #[path = "../scene/reference/sources.rs"]

@@ -30,6 +30,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ("Varies", "mesh.stiffness_variation"),
     ("WrittenBearing", "bearing"),
     ("StiffnessSection", "bearing.stiffness"),
+    ("RollersSection", "bearing.rollers"),
     ("CouplingSection", "coupling"),
     ("Mounting", "bearing.mounting"),
     ("BoreTilt", "bearing.mounting.misalignment"),
@@ -46,6 +47,7 @@ fn section<'a>(sources: &'a [Source], name: &str) -> &'a Section {
             "schema/housing.rs",
             "schema/machine.rs",
             "schema/mesh.rs",
+            "schema/rollers.rs",
             "scene/system/mod.rs",
             "scene/system/bearing.rs",
         ]

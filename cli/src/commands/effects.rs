@@ -14,6 +14,7 @@ use roulement::simulation::machine::Machine;
 use roulement_cli::measure::{self, measure};
 use roulement_cli::report::json;
 use roulement_cli::report::limits::Limits;
+use roulement_cli::report::shaft::unknown_to_rollers;
 use roulement_cli::sweep::all::threads;
 use serde_json::{Map, Value};
 
@@ -64,6 +65,9 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         values.insert(name.to_string(), json::effects(scene, &verdicts)?);
         let title = format!("bearing {name}");
         text += &format!("{}\n", to_text(&title, UNDER_SHAFT, scene, &verdicts));
+    }
+    if let MachineScene::Shaft(scene) = &scene {
+        text.extend(unknown_to_rollers(scene).map(|sentence| format!("{sentence}\n")));
     }
     if options.json {
         text = format!("{:#}", Value::Object(values));

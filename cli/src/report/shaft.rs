@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use roulement::interface::variables::quoted;
 use roulement::scene::system::SystemScene;
+use roulement::scene::system::spring::SceneSpring;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::{HousingOutputs, PointOutput, ShaftOutputs, System, SystemOutputs};
 
@@ -66,7 +67,13 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
             false if couples(scene, index) => {
                 vec![("moment.x", "N m"), ("moment.y", "N m"), ("moment.z", "N m"), ("twist", "rad")]
             }
-            false => vec![("moment.y", "N m"), ("moment.z", "N m")],
+            false => {
+                let mut others = vec![("moment.y", "N m"), ("moment.z", "N m")];
+                if rolls(scene, index) {
+                    others.extend([("largest_load", "N"), ("peak_pressure", "Pa"), ("loaded_rollers", "")]);
+                }
+                others
+            }
         };
         columns.extend(
             forces.into_iter().chain(others).map(|(quantity, unit)| (format!("{name}.{quantity}"), unit)),
@@ -79,10 +86,31 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
     columns
 }
 
+/// A bearing by its stiffness or by rollers, or a coupling; none of a mesh.
+fn spring(scene: &SystemScene, link: usize) -> Option<&SceneSpring> {
+    link.checked_sub(scene.meshes.len()).and_then(|own| scene.springs.get(own))
+}
+
 /// Is a link a coupling?
 fn couples(scene: &SystemScene, link: usize) -> bool {
-    let spring = link.checked_sub(scene.meshes.len()).and_then(|own| scene.springs.get(own));
-    spring.is_some_and(|spring| spring.second.is_some())
+    spring(scene, link).is_some_and(|spring| spring.second.is_some())
+}
+
+/// Is a link a bearing by rollers?
+fn rolls(scene: &SystemScene, link: usize) -> bool {
+    spring(scene, link).is_some_and(|spring| spring.rollers.is_some())
+}
+
+/// What bearings by rollers do not know, in a sentence each.
+pub fn unknown_to_rollers(scene: &SystemScene) -> impl Iterator<Item = String> + '_ {
+    let of = scene.springs.iter().filter(|spring| spring.rollers.is_some());
+    of.map(|spring| {
+        format!(
+            "bearing {}: rollers in balance wherever the rings are (level \"equilibrium\"); not simulated: friction and losses, slip, skew, a cage that moves by \
+             itself, the weight of rollers, growth by heat and fits, waves and spalls",
+            spring.name
+        )
+    })
 }
 
 /// Values of these columns: forces of a mesh are those on its first gear, of a bearing by its stiffness those on the shaft, of a coupling those on its first shaft.
@@ -106,7 +134,12 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
                 row.extend(force.fixed_rows::<3>(3).iter());
                 row.push(link.state.displacement[3]);
             }
-            false => row.extend(force.fixed_rows::<2>(4).iter()),
+            false => {
+                row.extend(force.fixed_rows::<2>(4).iter());
+                if let Some(rollers) = &link.rollers {
+                    row.extend([rollers.largest_load, rollers.peak_pressure, rollers.loaded as f64]);
+                }
+            }
         }
     }
     row.extend(&outputs.holding);
@@ -265,6 +298,21 @@ pub fn write_summary<'a>(
         writeln!(out, "{:<16} ball loads {least:.1} to {most:.1} N{}", "", power.unwrap_or_default())?;
         if let Some(Life { life, hours: Some(hours), .. }) = &seen.life {
             writeln!(out, "{:<16} life L10r {hours:.0} h, static safety {:.2}", "", life.static_safety)?;
+        }
+    }
+    for (name, link) in scene.link_names().zip(&outputs.links) {
+        if let Some(rollers) = &link.rollers {
+            let force = &link.state.force;
+            let hours = link.hours().map_or(String::new(), |hours| format!(", L10r {hours:.0} h"));
+            writeln!(
+                out,
+                "{name:<16} the shaft presses with {:.1} N across, {:.1} N along x; {} rollers loaded, up to {:.1} N, {:.0} MPa{hours}; no friction",
+                force[1].hypot(force[2]),
+                -force[0],
+                rollers.loaded,
+                rollers.largest_load,
+                rollers.peak_pressure * 1e-6
+            )?;
         }
     }
     let housings = scene.housings.iter().zip(&outputs.housings);

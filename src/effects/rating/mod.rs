@@ -6,6 +6,7 @@
 //! A race that the load stands still on wears in one place, and its loads count with a larger power than those of a race that the load
 //! goes around. Which one that is comes from how the load and both races turn.
 
+pub mod line_contact;
 pub mod standard;
 mod sums;
 

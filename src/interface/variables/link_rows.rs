@@ -1,4 +1,4 @@
-//! The rows of meshes, of bearings by their stiffness, and of couplings.
+//! The rows of meshes, of bearings by their stiffness or by rollers, and of couplings.
 
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::LinkOutputs;
@@ -107,6 +107,34 @@ const OF_SPRING: &[LinkRow] = &[
     }),
 ];
 
+/// Those of a bearing by rollers alone.
+const OF_ROLLERS: &[LinkRow] = &[
+    row("largest_load", FORCE, "largest load of a roller on the inner race of", |link| {
+        link.rollers.map_or(0.0, |rollers| rollers.largest_load)
+    }),
+    row("largest_rib_load", FORCE, "largest force of a rib on the end of a roller of", |link| {
+        link.rollers.map_or(0.0, |rollers| rollers.largest_rib_load)
+    }),
+    row("peak_pressure", (units::PASCAL, 1e9), "largest contact pressure of", |link| {
+        link.rollers.map_or(0.0, |rollers| rollers.peak_pressure)
+    }),
+    row("loaded_rollers", (units::ONE, 10.0), "number of rollers that the inner race presses, of", |link| {
+        link.rollers.map_or(0.0, |rollers| rollers.loaded as f64)
+    }),
+    row(
+        "life.L10r",
+        (units::ONE, 1e3),
+        "reference rating life in million revolutions under the loads of this moment, of",
+        |link| link.rollers.map_or(0.0, |rollers| rollers.life),
+    ),
+    row(
+        "life.static_safety",
+        (units::ONE, 1.0),
+        "load that leaves a mark over that at the largest pressure of",
+        |link| link.rollers.map_or(0.0, |rollers| rollers.static_safety),
+    ),
+];
+
 /// Those of a coupling alone.
 const OF_COUPLING: &[LinkRow] = &[
     row("force.x", FORCE, "force on the first shaft, x component, axes of the shaft, of", |link| {
@@ -133,8 +161,10 @@ const OF_COUPLING: &[LinkRow] = &[
 ];
 
 /// Rows of a mesh.
-pub const MESH: [&[LinkRow]; 2] = [OF_MESH, ENERGIES];
+pub const MESH: &[&[LinkRow]] = &[OF_MESH, ENERGIES];
 /// Rows of a bearing by its stiffness.
-pub const SPRING: [&[LinkRow]; 2] = [OF_SPRING, ENERGIES];
+pub const SPRING: &[&[LinkRow]] = &[OF_SPRING, ENERGIES];
+/// Rows of a bearing by rollers.
+pub const ROLLERS: &[&[LinkRow]] = &[OF_SPRING, OF_ROLLERS, ENERGIES];
 /// Rows of a coupling.
-pub const COUPLING: [&[LinkRow]; 2] = [OF_COUPLING, ENERGIES];
+pub const COUPLING: &[&[LinkRow]] = &[OF_COUPLING, ENERGIES];

@@ -331,12 +331,13 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         motion(&mut rows, Station::Seat(None, index), &prefix, &place, &[]);
     }
     for (index, name) in scene.link_names().enumerate() {
-        let of = match index.checked_sub(scene.meshes.len()).map(|own| scene.springs[own].second) {
+        let of = match index.checked_sub(scene.meshes.len()).map(|own| &scene.springs[own]) {
             None => link_rows::MESH,
-            Some(None) => link_rows::SPRING,
-            Some(Some(_)) => link_rows::COUPLING,
+            Some(spring) if spring.second.is_some() => link_rows::COUPLING,
+            Some(spring) if spring.rollers.is_some() => link_rows::ROLLERS,
+            Some(_) => link_rows::SPRING,
         };
-        rows.extend(of.into_iter().flatten().map(|LinkRow { key, unit, what, get }| {
+        rows.extend(of.iter().copied().flatten().map(|LinkRow { key, unit, what, get }| {
             let (name, description) = (format!("{}.{key}", quoted(name)), format!("{what} {name}"));
             row(name, *unit, Causality::Output, description, ShaftSource::Link(index, *get))
         }));

@@ -28,4 +28,14 @@ impl LinkForce {
             damped: 0.0,
         }
     }
+
+    /// The same without the moment about the axis, which is none in the mean over a turn, and without what the turn does.
+    pub fn without_turning(mut self) -> Self {
+        self.force[3] = 0.0;
+        for matrix in [&mut self.by_displacement, &mut self.by_rate] {
+            matrix.row_mut(3).fill(0.0);
+            matrix.column_mut(3).fill(0.0);
+        }
+        self
+    }
 }

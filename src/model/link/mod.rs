@@ -21,6 +21,7 @@ use nalgebra::{DVector, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::structure::{Map, Spin, Structure, StructureState, Turning};
+use crate::quasi_static::rollers::Rollers;
 pub use force::LinkForce;
 use spring_bearing::SpringBearing;
 use tooth_mesh::ToothMesh;
@@ -78,6 +79,8 @@ pub enum Law {
     Mesh(ToothMesh),
     /// A bearing by its stiffness, or a coupling.
     Spring(SpringBearing),
+    /// A roller bearing without states.
+    Rollers(Rollers),
 }
 
 /// A link.
@@ -137,6 +140,7 @@ impl Link {
         match &self.law {
             Law::Mesh(mesh) => mesh.force(displacement, rate, flank),
             Law::Spring(bearing) => bearing.force(displacement, rate),
+            Law::Rollers(bearing) => bearing.force(displacement, rate),
         }
     }
 
@@ -150,15 +154,22 @@ impl Link {
         match &self.law {
             Law::Mesh(mesh) => mesh.mean_force(displacement, rate, flank),
             Law::Spring(bearing) => bearing.force(displacement, rate),
+            Law::Rollers(bearing) => bearing.force(displacement, rate).without_turning(),
         }
     }
 
     /// \[s] shortest period of what varies as it turns at such a rate; none where nothing does.
     pub fn shortest_period(&self, rate: &Vector6<f64>) -> Option<f64> {
-        let Law::Mesh(ToothMesh { turn, varying: Some(varying), .. }) = &self.law else { return None };
-        let waves = [&varying.stiffness, &varying.error].into_iter().filter_map(Variation::most_waves);
-        let speed = (turn * rate[3]).abs();
-        waves.reduce(f64::max).filter(|_| speed > 0.0).map(|waves| TAU / (waves * speed))
+        let fastest = match &self.law {
+            Law::Mesh(ToothMesh { turn, varying: Some(varying), .. }) => {
+                let waves =
+                    [&varying.stiffness, &varying.error].into_iter().filter_map(Variation::most_waves);
+                waves.reduce(f64::max)? * turn * rate[3]
+            }
+            Law::Rollers(bearing) => bearing.passing(rate[3]),
+            Law::Mesh(_) | Law::Spring(_) => return None,
+        };
+        (fastest != 0.0).then(|| TAU / fastest.abs())
     }
 
     /// State of the link while its ends are in these states, `h` \[s] after it did something else.

@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::rollers::bearing;
 use super::spring::SceneSpring;
 use super::{MountedScene, SystemLoad};
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::effects::defects::On;
+use crate::model::state::stack;
 use crate::scene::{Drive, Level, Scene, SceneError};
 use crate::schema::units::Acceleration;
 use crate::schema::{
-    AxialSeat, Components, HousingSection, Method, Mounting, MountingDirection, ShaftSection,
+    AxialSeat, Components, HousingSection, Method, Mounting, MountingDirection, RollersSection, ShaftSection,
     StiffnessSection, explain, regular,
 };
 
@@ -26,11 +28,12 @@ pub struct WrittenBearing {
     pub scene: Option<Value>,
     /// Its designation in the catalogue, such as 7206 B.
     pub catalogue: Option<String>,
-    /// Level of its model: its motion in time, or balls in balance at every place of its rings, without states.
-    #[serde(default)]
-    pub level: Level,
+    /// Level of its model: its motion in time, or balls in balance at every place of its rings, without states; rollers always are.
+    pub level: Option<Level>,
     /// Its stiffness, in place of a scene: springs instead of balls.
     pub stiffness: Option<StiffnessSection>,
+    /// Its cylindrical rollers, in place of a scene.
+    pub rollers: Option<RollersSection>,
     /// Name of the shaft that it sits on; needed where there are several.
     pub shaft: Option<String>,
     /// Where it sits on the shaft.
@@ -61,18 +64,26 @@ pub struct Shared {
 pub type Catalogue = fn(&str) -> Result<(String, f64), String>;
 
 impl WrittenBearing {
-    /// The bearing by its stiffness, where it is one.
-    pub fn spring(self, shafts: &[ShaftSection], housings: &[HousingSection]) -> Option<SceneSpring> {
-        let Self { name, stiffness, shaft, mounting, .. } = self;
-        Some(SceneSpring {
+    /// Is it a link between the shaft and what it sits in, by its stiffness or by rollers?
+    pub fn links(&self) -> bool {
+        self.stiffness.is_some() || self.rollers.is_some()
+    }
+
+    /// The bearing by its stiffness or by rollers.
+    pub fn spring(self, shafts: &[ShaftSection], housings: &[HousingSection]) -> SceneSpring {
+        let Self { name, stiffness, rollers, shaft, mounting, .. } = self;
+        let (offset, tilt) = mounting.bore();
+        SceneSpring {
             name,
             shaft: shafts.iter().position(|own| shaft.as_ref() == Some(&own.name)).unwrap_or(0),
             position: mounting.position.0,
             second: None,
             bore: mounting.bore(),
             housing: mounting.housing.and_then(|wanted| housings.iter().position(|own| own.name == wanted)),
-            stiffness: stiffness?,
-        })
+            stiffness: stiffness.unwrap_or_default(),
+            rollers: rollers
+                .map(|rollers| bearing(&rollers, mounting.direction.sign(), stack(&offset, &tilt))),
+        }
     }
 
     /// The bearing with its scene.
@@ -81,6 +92,7 @@ impl WrittenBearing {
     /// With its name and what is wrong.
     pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
         let Self { name, scene, catalogue, level, shaft, mounting, set, .. } = self;
+        let level = level.unwrap_or_default();
         // That there is such a shaft was checked.
         let named =
             |name: &Option<String>| given.shafts.iter().position(|(own, _)| name.as_ref() == Some(own));

@@ -3,12 +3,10 @@
 use super::bearing::WrittenBearing;
 use super::check_motion::given_motion;
 use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
-use super::{MountedScene, NamedLoad, Written, check_housing, spring};
+use super::{MountedScene, NamedLoad, Written, check_housing, rollers, spring};
 use crate::effects::gravity::GRAVITY;
 use crate::schema::numbers::Range;
-use crate::schema::{
-    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, StiffnessSection, check_duty, check_phases,
-};
+use crate::schema::{AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, check_duty, check_phases};
 
 /// Checks every value against its range, and the keys against one another.
 pub fn check(written: &Written) -> Result<(), SceneError> {
@@ -36,10 +34,10 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             return of_matrices(name);
         }
     }
-    if written.bearing.iter().all(|bearing| bearing.stiffness.is_some()) {
+    if written.bearing.iter().all(WrittenBearing::links) {
         return Err(SceneError::conflict(
             "bearing",
-            "a shaft needs bearings: give at least one [[bearing]] that is simulated",
+            "a shaft needs bearings: give at least one [[bearing]] of balls that are simulated",
         ));
     }
     if written.shaft.0.is_empty() {
@@ -91,8 +89,8 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
         }
         bore(mounting)?;
         hub(shafts, bearing)?;
-        if let Some(stiffness) = &bearing.stiffness {
-            by_stiffness(bearing, stiffness)?;
+        if bearing.links() {
+            linked(bearing)?;
         }
         on_one_of(shafts, bearing)?;
     }
@@ -202,8 +200,8 @@ fn hub(shafts: &[ShaftSection], bearing: &WrittenBearing) -> Result<(), SceneErr
     Ok(())
 }
 
-/// A bearing by its stiffness has nothing of one that is simulated.
-fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Result<(), SceneError> {
+/// A bearing by its stiffness or by rollers has nothing of one of balls.
+fn linked(bearing: &WrittenBearing) -> Result<(), SceneError> {
     let inside =
         |source| SceneError::At { place: format!("bearing \"{}\"", bearing.name), source: Box::new(source) };
     let mounting = &bearing.mounting;
@@ -215,10 +213,19 @@ fn by_stiffness(bearing: &WrittenBearing, stiffness: &StiffnessSection) -> Resul
         ("bearing.mounting", mounting.outer_shaft.is_some() || mounting.axial == AxialSeat::Free || preload),
     ];
     if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
-        let why = "is for a bearing that is simulated; of one by its stiffness mounting has position, housing, offset and misalignment alone";
+        let why = "is for a bearing of balls that are simulated; of one by its stiffness or by rollers mounting has position, direction, housing, offset and \
+                   misalignment alone";
         return Err(inside(SceneError::conflict(key, why)));
     }
-    spring::check_bearing(stiffness).map_err(inside)
+    let checked = match (&bearing.stiffness, &bearing.rollers) {
+        (Some(_), Some(_)) => {
+            Err(SceneError::conflict("bearing", "give at most one of stiffness and rollers"))
+        }
+        (Some(stiffness), None) => spring::check_bearing(stiffness),
+        (None, Some(rollers)) => rollers::check(rollers, bearing.level),
+        (None, None) => Ok(()),
+    };
+    checked.map_err(inside)
 }
 
 /// How an outer ring sits.

@@ -17,12 +17,12 @@ pub fn held(
         let on = |bearing: &&MountedScene| bearing.shaft == index || bearing.outer_shaft == Some(index);
         let own = || bearings.iter().filter(on);
         // What the other shaft of a coupling holds is held.
-        let by_spring = springs.iter().filter(|spring| spring.shaft == index || spring.second == Some(index));
-        let mut by_spring = by_spring.filter_map(|spring| spring.stiffness.axial.as_ref());
+        let mut by_spring =
+            springs.iter().filter(|spring| spring.shaft == index || spring.second == Some(index));
         let driven = shaft.load.iter().any(|load| load.displacement.x.is_some());
         let held = driven
             || own().any(|bearing| bearing.mounting.axial == AxialSeat::Held && !goes_along(&bearing.scene))
-            || by_spring.any(|axial| axial.number() != Some(0.0));
+            || by_spring.any(SceneSpring::holds_axially);
         if shaft.matrices.is_some() || held {
             continue;
         }

@@ -12,6 +12,7 @@ pub mod mesh;
 mod numbers;
 mod planets;
 mod ranges;
+mod rollers;
 pub mod spring;
 
 use std::fmt;
@@ -46,7 +47,7 @@ pub struct SystemScene {
     pub housings: Vec<HousingSection>,
     /// Gears in mesh.
     pub meshes: Vec<SceneMesh>,
-    /// Bearings by their stiffness, then couplings.
+    /// Bearings by their stiffness or by rollers, then couplings.
     pub springs: Vec<SceneSpring>,
     /// The bearings.
     pub bearings: Vec<MountedScene>,
@@ -238,8 +239,11 @@ impl SystemScene {
         };
         match Scene::with_files(text, folder).map_err(placed)? {
             // Lines of the text with the tables are not those that the reader of a message has.
-            Some(text) => read(&text, None),
-            None => read(text, file),
+            Some(text) => read(&with_rollers(&text).map_err(placed)?.unwrap_or(text), None),
+            None => match with_rollers(text).map_err(placed)? {
+                Some(text) => read(&text, None),
+                None => read(text, file),
+            },
         }
     }
 
@@ -248,7 +252,10 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn edited(text: &str) -> Result<Self, SceneError> {
-        Self::alone(text, catalogue::scene_of)
+        match with_rollers(text)? {
+            Some(text) => Self::alone(&text, catalogue::scene_of),
+            None => Self::alone(text, catalogue::scene_of),
+        }
     }
 
     /// The same, with the catalogue that its bearings are looked up in.
@@ -310,9 +317,8 @@ impl SystemScene {
         }
         let meshes = mesh.into_iter().map(|mesh| mesh::read(mesh, &shafts));
         let mut meshes = meshes.collect::<Result<Vec<_>, _>>().map_err(placed)?;
-        let (springs, bearing): (Vec<_>, Vec<_>) =
-            bearing.into_iter().partition(|bearing| bearing.stiffness.is_some());
-        let springs = springs.into_iter().filter_map(|spring| spring.spring(&shafts, &housing)).map(Ok);
+        let (springs, bearing): (Vec<_>, Vec<_>) = bearing.into_iter().partition(WrittenBearing::links);
+        let springs = springs.into_iter().map(|spring| Ok(spring.spring(&shafts, &housing)));
         let couplings = coupling.iter().map(|coupling| spring::coupling(coupling, &shafts));
         let springs = springs.chain(couplings).collect::<Result<Vec<_>, _>>().map_err(placed)?;
         mesh::check_trains(&shafts, &meshes, &springs).map_err(placed)?;
@@ -499,6 +505,36 @@ impl SystemScene {
     }
 }
 
+/// The text of a system with the rollers of its catalogue bearings in place of their designations; none where it has none.
+fn with_rollers(text: &str) -> Result<Option<String>, SceneError> {
+    let Ok(mut table) = toml::from_str::<Table>(text) else { return Ok(None) };
+    let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
+    let mut found = false;
+    for keys in written.filter_map(Value::as_table_mut) {
+        let designation = keys.get("catalogue").and_then(Value::as_str);
+        let Some(rollers) = designation.and_then(catalogue::rollers_of) else { continue };
+        let name = keys.get("name").and_then(Value::as_str).unwrap_or_default();
+        let refuse = |why: catalogue::CatalogueError| SceneError::At {
+            place: format!("bearing \"{name}\""),
+            source: Box::new(SceneError::conflict("bearing.catalogue", why.to_string())),
+        };
+        let mut rollers = toml::from_str::<Table>(&rollers.map_err(refuse)?).unwrap_or_default();
+        // Changes of the rollers; others are refused where they are read.
+        if let Some(Value::Table(set)) = keys.get_mut("set")
+            && let Some(Value::Table(changes)) = set.remove("rollers")
+        {
+            rollers.extend(changes);
+            if set.is_empty() {
+                keys.remove("set");
+            }
+        }
+        keys.remove("catalogue");
+        keys.insert("rollers".into(), rollers.into());
+        found = true;
+    }
+    Ok(found.then(|| table.to_string()))
+}
+
 /// The text of a system with the whole scene of every bearing and the matrices of its shafts and housings in it; does gravity act?
 fn standing_alone(
     text: &str,
@@ -535,7 +571,9 @@ fn standing_alone(
 fn write_bearings(table: &mut Table, bearings: &[MountedScene], weighs: bool) {
     let solver = table.contains_key("solver");
     let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
-    let simulated = written.filter_map(Value::as_table_mut).filter(|keys| !keys.contains_key("stiffness"));
+    let simulated = written
+        .filter_map(Value::as_table_mut)
+        .filter(|keys| !keys.contains_key("stiffness") && !keys.contains_key("rollers"));
     for (keys, bearing) in simulated.zip(bearings) {
         keys.remove("catalogue");
         keys.remove("set");

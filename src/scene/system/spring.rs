@@ -1,10 +1,11 @@
-//! Springs of a system: bearings by their stiffness, and couplings between two shafts.
+//! Links of a system: bearings by their stiffness or by rollers, and couplings between two shafts.
 
 use nalgebra::Vector3;
 
 use super::ranges::POSITION;
 use crate::model::link::force_table::ForceTable;
 use crate::model::link::spring_bearing::Spring;
+use crate::quasi_static::rollers::Rollers;
 use crate::schema::numbers::Range;
 use crate::schema::units::Quantity;
 use crate::schema::{AxialTaken, CouplingSection, SceneError, ShaftSection, Stiffness, StiffnessSection};
@@ -15,7 +16,7 @@ const PLAY: Range = Range::closed(0.0, 0.1, "m");
 const WAY: Range = Range::closed(-1.0, 1.0, "m or rad");
 const FORCE: Range = Range::closed(-1e9, 1e9, "N or N m");
 
-/// A bearing by its stiffness, or a coupling.
+/// A bearing by its stiffness or by rollers, or a coupling.
 #[derive(Clone, Debug)]
 pub struct SceneSpring {
     /// Its name.
@@ -30,8 +31,10 @@ pub struct SceneSpring {
     pub second: Option<usize>,
     /// \[m, rad] how far its bore lies beside the axis of the shaft, and the tilt of that.
     pub bore: (Vector3<f64>, Vector3<f64>),
-    /// Its keys.
+    /// Its keys; none of a bearing by rollers.
     pub stiffness: StiffnessSection,
+    /// Its rollers.
+    pub rollers: Option<Rollers>,
 }
 
 impl SceneSpring {
@@ -44,6 +47,12 @@ impl SceneSpring {
             }
             _ => None,
         }
+    }
+
+    /// Does it hold the shaft along the axis?
+    pub fn holds_axially(&self) -> bool {
+        let by_stiffness = self.stiffness.axial.as_ref().is_some_and(|axial| axial.number() != Some(0.0));
+        by_stiffness || self.rollers.as_ref().is_some_and(Rollers::has_ribs)
     }
 
     /// Does it hold the turns of two shafts against each other?
@@ -99,6 +108,7 @@ fn checked(section: &CouplingSection, shafts: &[ShaftSection]) -> Result<SceneSp
         second: Some(of[1]),
         bore: (Vector3::zeros(), Vector3::zeros()),
         stiffness: stiffness.clone(),
+        rollers: None,
     })
 }
 

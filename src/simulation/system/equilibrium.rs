@@ -9,11 +9,12 @@ use serde_json::{Map, Value, json};
 use super::super::start::held_load;
 use super::critical_speeds::{Campbell, campbell};
 use super::linear::ShaftMode;
-use super::{System, SystemError, SystemOutputs};
+use super::{LinkOutputs, System, SystemError, SystemOutputs};
 use crate::analysis::condensed::Condensed;
 use crate::effects::rating::life_of_all;
 use crate::effects::reports::LifeOutput;
 use crate::model::bodies::Race;
+use crate::quasi_static::rollers::RollerOutputs;
 use crate::scene::system::SystemScene;
 use crate::simulation::outputs::Outputs;
 
@@ -21,7 +22,7 @@ use crate::simulation::outputs::Outputs;
 #[derive(Clone, Debug)]
 pub struct MachineEquilibrium {
     title: String,
-    /// Names of meshes, then of bearings by their stiffness, then of couplings; how many there are of the first two.
+    /// Names of meshes, then of bearings by their stiffness or by rollers, then of couplings; how many there are of the first two.
     links: (Vec<String>, [usize; 2]),
     /// Names of the shafts.
     shafts: Vec<String>,
@@ -104,7 +105,10 @@ impl MachineEquilibrium {
 
     /// \[h] life of all bearings together, reference and modified; none where one of them has none.
     pub fn hours(&self) -> [Option<f64>; 2] {
-        [0, 1].map(|which| life_of_all(self.bearings.iter().map(|bearing| bearing.hours?[which])))
+        let of_rollers =
+            || self.outputs.links.iter().filter_map(LinkOutputs::hours).map(|hours| [Some(hours), None]);
+        let each = || self.bearings.iter().map(|bearing| bearing.hours).chain(of_rollers().map(Some));
+        [0, 1].map(|which| life_of_all(each().map(|hours| hours?[which])))
     }
 
     /// All of it, SI units.
@@ -140,7 +144,23 @@ impl MachineEquilibrium {
             let of = all.map(|(name, link)| {
                 let [force, moment] =
                     [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
-                (name.clone(), json!({ "force": force, "moment": moment }))
+                let value = match link.rollers {
+                    None => json!({ "force": force, "moment": moment }),
+                    Some(rollers) => json!({
+                        "force": force,
+                        "moment": moment,
+                        "stiffness": rollers.stiffness.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
+                        "largest_load": rollers.largest_load,
+                        "largest_rib_load": rollers.largest_rib_load,
+                        "loaded_rollers": rollers.loaded,
+                        "peak_pressure": rollers.peak_pressure,
+                        "L10r": rollers.life,
+                        "L10r_hours": link.hours(),
+                        "equivalent_load": rollers.equivalent_load,
+                        "static_safety": rollers.static_safety,
+                    }),
+                };
+                (name.clone(), value)
             });
             of.collect()
         };
@@ -266,6 +286,41 @@ impl fmt::Display for MachineEquilibrium {
     }
 }
 
+fn write_rollers(f: &mut fmt::Formatter<'_>, of: &RollerOutputs, hours: Option<f64>) -> fmt::Result {
+    let rib = match of.largest_rib_load {
+        0.0 => String::new(),
+        load => format!(", rib up to {load:.2} N"),
+    };
+    writeln!(
+        f,
+        "{:<16} {} rollers loaded, up to {:.2} N{rib}, pressure {:.1} MPa",
+        "",
+        of.loaded,
+        of.largest_load,
+        of.peak_pressure * 1e-6
+    )?;
+    let hours = hours.map_or(String::new(), |hours| format!(" ({hours:.4e} h)"));
+    writeln!(
+        f,
+        "{:<16} L10r {:.4e} million revolutions{hours}; P {:.2} N, static safety {:.3}",
+        "", of.life, of.equivalent_load, of.static_safety
+    )?;
+    write_stiffness(f, "axes of the shaft", &of.stiffness)
+}
+
+fn write_stiffness(f: &mut fmt::Formatter<'_>, axes: &str, stiffness: &Matrix6<f64>) -> fmt::Result {
+    writeln!(
+        f,
+        "{:<16} stiffness, {axes}: Fx, Fy, Fz [N], Mx, My, Mz [N m] by x, y, z [m], rx, ry, rz [rad]",
+        ""
+    )?;
+    for row in stiffness.row_iter() {
+        let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
+        writeln!(f, "{:<16} {}", "", row.join(" "))?;
+    }
+    Ok(())
+}
+
 impl MachineEquilibrium {
     fn write_links(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (names, [meshes, by_stiffness]) = &self.links;
@@ -304,11 +359,18 @@ impl MachineEquilibrium {
                     on[5],
                     link.state.displacement[3] * 1e3
                 )?,
-                false => writeln!(
-                    f,
-                    "\n{name:<16} force on the shaft x {:.2} y {:.2} z {:.2} N, moment y {:.5} z {:.5} N m (by its stiffness)",
-                    on[0], on[1], on[2], on[4], on[5]
-                )?,
+                false => {
+                    let how =
+                        if link.rollers.is_some() { "rollers without friction" } else { "by its stiffness" };
+                    writeln!(
+                        f,
+                        "\n{name:<16} force on the shaft x {:.2} y {:.2} z {:.2} N, moment y {:.5} z {:.5} N m ({how})",
+                        on[0], on[1], on[2], on[4], on[5]
+                    )?;
+                    if let Some(rollers) = &link.rollers {
+                        write_rollers(f, rollers, link.hours())?;
+                    }
+                }
             }
         }
         Ok(())
@@ -358,15 +420,6 @@ impl MachineEquilibrium {
                 life.static_safety
             )?;
         }
-        writeln!(
-            f,
-            "{:<16} stiffness, own axes: Fx, Fy, Fz [N], Mx, My, Mz [N m] by x, y, z [m], rx, ry, rz [rad]",
-            ""
-        )?;
-        for row in of.stiffness.row_iter() {
-            let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
-            writeln!(f, "{:<16} {}", "", row.join(" "))?;
-        }
-        Ok(())
+        write_stiffness(f, "own axes", &of.stiffness)
     }
 }

@@ -1,4 +1,4 @@
-//! Links of a system from its scene: meshes, then bearings by their stiffness, then couplings.
+//! Links of a system from its scene: meshes, then bearings by their stiffness or by rollers, then couplings.
 
 use nalgebra::Vector3;
 
@@ -83,6 +83,10 @@ pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
             ));
         }
         ends.extend(spring.second.map(|second| end(second, &Vector3::zeros())));
+        if let Some(rollers) = &spring.rollers {
+            links.push(Link { ends, law: Law::Rollers(rollers.clone()) });
+            continue;
+        }
         let of = &spring.stiffness;
         let law = SpringBearing {
             stiffness: [

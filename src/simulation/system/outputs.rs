@@ -1,10 +1,13 @@
 //! Outputs of shafts on their bearings and of their housings: motion at points, drive, energies.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DVector, Vector3};
 
 use super::{first_stations, housing_stations};
 use crate::model::link::{Law, Link, LinkState};
 use crate::model::structure::{Carrier, Map, Spin, StructureEnergies, StructurePowers, StructureState};
+use crate::quasi_static::rollers::RollerOutputs;
 use crate::scene::system::SystemScene;
 
 /// Motion of a point of a structure, in the shaft's axes.
@@ -46,13 +49,15 @@ pub struct ShaftOutputs {
     pub energies: StructureEnergies,
 }
 
-/// Outputs of a link: a mesh, a bearing by its stiffness, or a coupling.
+/// Outputs of a link: a mesh, a bearing by its stiffness or by its rollers, or a coupling.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkOutputs {
     /// Forces and energies; forces are those on the first gear, or on the shaft.
     pub state: LinkState,
     /// Outputs of teeth alone.
     pub teeth: TeethOutputs,
+    /// Outputs of rollers alone.
+    pub rollers: Option<RollerOutputs>,
 }
 
 /// Outputs of teeth in mesh.
@@ -81,9 +86,20 @@ impl LinkOutputs {
                     friction_power: mesh.friction_power(&state.displacement, &state.rate),
                 }
             }
-            Law::Spring(_) => TeethOutputs::default(),
+            Law::Spring(_) | Law::Rollers(_) => TeethOutputs::default(),
         };
-        Self { state: *state, teeth }
+        let rollers = match &link.law {
+            Law::Rollers(bearing) => Some(bearing.outputs(&state.displacement, &state.rate)),
+            Law::Mesh(_) | Law::Spring(_) => None,
+        };
+        Self { state: *state, teeth, rollers }
+    }
+
+    /// \[h] reference life of rollers at the present speed; none of others, or at rest.
+    pub fn hours(&self) -> Option<f64> {
+        let speed = self.state.rate[3].abs();
+        let life = self.rollers.as_ref().filter(|_| speed > 0.0)?.life;
+        Some(life * 1e6 * TAU / speed / 3600.0)
     }
 }
 

@@ -115,7 +115,7 @@ impl Statics<'_> {
         let overlap = |mesh: &ToothMesh| -stack(&mesh.normals[0], &Vector3::zeros());
         let meshes = self.links.iter().enumerate().filter_map(|(index, link)| match &link.law {
             Law::Mesh(mesh) => Some((index, mesh, by_turns(link, &overlap(mesh)))),
-            Law::Spring(_) => None,
+            Law::Spring(_) | Law::Rollers(_) => None,
         });
         let meshes: Vec<_> = meshes.collect();
         let couplings = self.links.iter().filter_map(|link| match &link.law {

@@ -1,0 +1,90 @@
+//! Roller bearings of a system.
+
+use nalgebra::Vector6;
+
+use crate::quasi_static::roller::Profile;
+use crate::quasi_static::rollers::{Geometry, Rollers};
+use crate::schema::numbers::Range;
+use crate::schema::{AxialTaken, Level, RollerProfile, RollersSection, SceneError};
+
+const COUNT: Range = Range::closed(3.0, 1000.0, "");
+const SIZE: Range = Range::closed(1e-4, 1.0, "m");
+const CLEARANCE: Range = Range::closed(-1e-3, 1e-2, "m");
+const PLAY: Range = Range::closed(0.0, 0.1, "m");
+const RADIUS: Range = Range::closed(1e-3, 1e6, "m");
+const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
+const FORCE: Range = Range::above(0.0, 1e9, "N");
+const DAMPING: Range = Range::closed(0.0, 1e15, "N s/m or N m s/rad");
+/// [-] most of the circle of their centres that rollers fill.
+const FULL: f64 = 1.0;
+
+/// Checks the keys of a roller bearing.
+///
+/// # Errors
+/// Names the key, the value and the range.
+pub fn check(of: &RollersSection, level: Option<Level>) -> Result<(), SceneError> {
+    if level == Some(Level::Dynamic) {
+        let why = "rollers are simulated at level = \"equilibrium\"";
+        return Err(SceneError::conflict("bearing.level = \"dynamic\"", why));
+    }
+    let key = |name: &str| format!("bearing.rollers.{name}");
+    let length = of.length.0;
+    COUNT.check(&key("count"), of.count as f64)?;
+    let pitch = of.pitch_diameter.0;
+    SIZE.check(&key("pitch_diameter"), pitch)?;
+    let room = pitch * (FULL * std::f64::consts::PI / of.count as f64).sin();
+    Range::closed(SIZE.low, room.min(0.5 * pitch), "m").check(&key("diameter"), of.diameter.0)?;
+    SIZE.check(&key("length"), length)?;
+    let numbers = [
+        ("diametral_clearance", of.diametral_clearance.map(|of| of.0), CLEARANCE),
+        ("crown_radius", of.crown_radius.map(|of| of.0), RADIUS),
+        ("axial_clearance", of.axial_clearance.map(|of| of.0), PLAY),
+        ("rib_stiffness", of.rib_stiffness.map(|of| of.0), STIFFNESS),
+        ("dynamic_load_rating", of.dynamic_load_rating.map(|of| of.0), FORCE),
+        ("radial_damping", of.radial_damping.map(|of| of.0), DAMPING),
+        ("axial_damping", of.axial_damping.map(|of| of.0), DAMPING),
+        ("tilt_damping", of.tilt_damping.map(|of| of.0), DAMPING),
+    ];
+    for (name, value, range) in numbers {
+        value.map_or(Ok(()), |value| range.check(&key(name), value))?;
+    }
+    if of.axial_way.is_none() && (of.axial_clearance.is_some() || of.rib_stiffness.is_some()) {
+        let why = "says which forces along the axis ribs take: give it, or take axial_clearance and rib_stiffness out";
+        return Err(SceneError::conflict(key("axial_way"), why));
+    }
+    Ok(())
+}
+
+/// The bearing, whose x axis points along that of the shaft (1) or against it (-1), with the bore of its outer ring at `rest`.
+pub fn bearing(of: &RollersSection, direction: f64, rest: Vector6<f64>) -> Rollers {
+    let along = of.axial_way.map_or([false; 2], |way| match way {
+        AxialTaken::Both => [true; 2],
+        AxialTaken::Along => [direction > 0.0, direction < 0.0],
+        AxialTaken::Against => [direction < 0.0, direction > 0.0],
+    });
+    let profile = match (of.crown_radius, of.profile) {
+        (Some(radius), _) => Profile::Crowned(radius.0),
+        (None, RollerProfile::Logarithmic) => Profile::Logarithmic,
+        (None, RollerProfile::Straight) => Profile::Straight,
+    };
+    let geometry = Geometry {
+        count: of.count,
+        diameter: of.diameter.0,
+        length: of.length.0,
+        pitch_diameter: of.pitch_diameter.0,
+        diametral_clearance: of.diametral_clearance.map_or(0.0, |of| of.0),
+        profile,
+        ribs: along,
+        axial_clearance: of.axial_clearance.map_or(0.0, |of| of.0),
+        rib_stiffness: of.rib_stiffness.map(|of| of.0),
+        first_azimuth: 0.0,
+    };
+    let mut bearing = Rollers::new(geometry, of.dynamic_load_rating.map(|of| of.0));
+    bearing.damping = [
+        of.radial_damping.map_or(0.0, |c| c.0),
+        of.axial_damping.map_or(0.0, |c| c.0),
+        of.tilt_damping.map_or(0.0, |c| c.0),
+    ];
+    bearing.rest = rest;
+    bearing
+}
