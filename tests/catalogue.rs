@@ -403,7 +403,7 @@ fn published_ratings_of_cylindrical_roller_bearings() {
         let text = rollers_of(name).unwrap().unwrap();
         let of: RollersSection = read(toml::from_str::<toml::Table>(&text).unwrap()).unwrap();
         let sizes = [of.diameter.0, of.length.0, of.pitch_diameter.0];
-        let own = Ratings::new(of.count, sizes, None);
+        let own = Ratings::new(of.count, sizes, 1.0, None);
         let errors =
             [own.dynamic_load_rating / dynamic, own.static_load_rating / static_].map(|of| of * 1e-3 - 1.0);
         println!("{name}: {} x {:.1} x {:.2} mm: {errors:.3?}", of.count, 1e3 * sizes[0], 1e3 * sizes[1]);
@@ -426,7 +426,7 @@ fn published_ratings_of_cylindrical_roller_bearings() {
                 continue;
             };
             let of: RollersSection = read(toml::from_str::<toml::Table>(&text).unwrap()).unwrap();
-            let own = Ratings::new(of.count, [of.diameter.0, of.length.0, of.pitch_diameter.0], None);
+            let own = Ratings::new(of.count, [of.diameter.0, of.length.0, of.pitch_diameter.0], 1.0, None);
             assert!(own.static_load_rating > 0.93 * before, "{series}{code:02}");
             before = own.static_load_rating;
             assert!(

@@ -31,7 +31,7 @@ const SAFEST: f64 = 1e6;
 const RIB_PLACE: f64 = 0.45;
 const RIB_RADIUS: f64 = 0.05;
 
-/// What a cylindrical roller bearing is made of.
+/// What a roller bearing of one row is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
     /// [-] rollers.
@@ -54,18 +54,36 @@ pub struct Geometry {
     pub rib_stiffness: Option<f64>,
     /// \[rad] azimuth of the first roller at the start.
     pub first_azimuth: f64,
+    /// Taper; none of cylindrical rollers.
+    pub taper: Option<Taper>,
+}
+
+/// Taper of a bearing: its inner ring has one rib, at the large ends of the rollers. Their centres are in the middle of the bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taper {
+    /// \[rad] angle between the axis and the line on the outer race: the contact angle.
+    pub contact_angle: f64,
+    /// \[rad] angle between both lines of a roller.
+    pub roller_angle: f64,
+    /// Does a force of the shaft along +x press the inner ring into the outer one (1), or one along -x (-1)?
+    pub direction: f64,
 }
 
 impl Geometry {
-    /// [-] diameter of the rollers over that of the circle of their centres.
+    /// [-] diameter of the rollers over that of the circle of their centres, with the cosine of the contact angle.
     fn gamma(&self) -> f64 {
-        self.diameter / self.pitch_diameter
+        self.diameter * self.cosine() / self.pitch_diameter
+    }
+
+    /// [-] cosine of the contact angle.
+    fn cosine(&self) -> f64 {
+        self.taper.map_or(1.0, |taper| taper.contact_angle.cos())
     }
 
     fn roller(&self, stations: Option<usize>) -> Roller {
         let Self { diameter, length, axial_clearance, .. } = *self;
-        let line = |side: f64| Line {
-            normal: Vector3::new(0.0, side, 0.0),
+        let line = |side: f64, angle: f64| Line {
+            normal: Vector3::new(angle.sin(), angle.cos(), 0.0) * side,
             side,
             gap: 0.25 * self.diametral_clearance,
             stiffness: Roller::line_stiffness(length),
@@ -82,7 +100,16 @@ impl Geometry {
                 stiffness,
             })
         });
-        Roller::new([line(-1.0), line(1.0)], ribs.collect(), [diameter, length], self.profile, stations)
+        let mut ribs: Vec<Rib> = ribs.collect();
+        let mut angles = [0.0; 2];
+        if let Some(Taper { contact_angle, roller_angle, direction }) = self.taper {
+            angles = [contact_angle - roller_angle, contact_angle].map(|angle| direction * angle);
+            let (sine, cosine) = (contact_angle - 0.5 * roller_angle).sin_cos();
+            let normal = Vector3::new(-direction * cosine, sine, -direction * lever);
+            ribs.push(Rib { race: 0, normal, gap: 0.0, stiffness });
+        }
+        let lines = [line(-1.0, angles[0]), line(1.0, angles[1])];
+        Roller::new(lines, ribs, [diameter, length], self.profile, stations)
     }
 }
 
@@ -152,7 +179,12 @@ impl Rollers {
             roller: geometry.roller(stations),
             mass: DENSITY * 0.25 * PI * diameter * diameter * length,
             ratio: 0.5 * (1.0 - geometry.gamma()),
-            ratings: Ratings::new(count, [diameter, length, pitch_diameter], dynamic_load_rating),
+            ratings: Ratings::new(
+                count,
+                [diameter, length, pitch_diameter],
+                geometry.cosine(),
+                dynamic_load_rating,
+            ),
             damping: [0.0; 3],
             rest: Vector6::zeros(),
             geometry,

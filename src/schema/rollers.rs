@@ -1,11 +1,11 @@
-//! The section of a cylindrical roller bearing of a machine, `[bearing.rollers]`.
+//! The section of a cylindrical or tapered roller bearing of a machine, `[bearing.rollers]`.
 
 use serde::Deserialize;
 
 use super::mesh::AxialTaken;
 use super::units::*;
 
-/// A cylindrical roller bearing: rollers in balance wherever its rings are.
+/// A roller bearing of one row: rollers in balance wherever its rings are.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RollersSection {
@@ -26,8 +26,14 @@ pub struct RollersSection {
     pub crown_radius: Option<Length>,
     /// Which forces of the shaft along the bearing's x axis its ribs take: `"both"` (NUP), `"+x"` or `"-x"` (NJ); none if not given (N, NU).
     pub axial_way: Option<AxialTaken>,
-    /// \[m] play of the shaft along the axis between the ribs, from end to end; 0 if not given.
+    /// \[m] play of the shaft along the axis between the ribs, from end to end; of a tapered bearing how far the inner ring goes along x before it touches, negative is a
+    /// preload. 0 if not given.
     pub axial_clearance: Option<Length>,
+    /// \[rad] angle between the axis and the line on the outer race of a tapered bearing, which a force of the shaft along the bearing's x axis presses together; none of
+    /// cylindrical rollers.
+    pub contact_angle: Option<Angle>,
+    /// \[rad] angle between both lines of a tapered roller; goes with it.
+    pub roller_angle: Option<Angle>,
     /// [N/m] stiffness of a roller between the ribs of both rings; that of punches of a twentieth of its diameter if not given.
     pub rib_stiffness: Option<TranslationalStiffness>,
     /// \[N] basic dynamic load rating C; by ISO 281 if not given.

@@ -19,7 +19,7 @@ fn published_factors_of_line_contact() {
         (0.3, 83.8),
     ] {
         // One roller of 1 mm: C is 1.1 f_c.
-        let own = Ratings::new(1, [1e-3, 1e-3, 1e-3 / gamma], None).dynamic_load_rating / 1.1;
+        let own = Ratings::new(1, [1e-3, 1e-3, 1e-3 / gamma], 1.0, None).dynamic_load_rating / 1.1;
         println!("{gamma} {own} {factor}");
         assert!((own / factor - 1.0).abs() < 1e-3, "{gamma}: {own} {factor}");
     }
@@ -38,6 +38,7 @@ fn half_loaded(profile: Profile) -> Rollers {
         axial_clearance: 0.0,
         rib_stiffness: None,
         first_azimuth: 0.0,
+        taper: None,
     };
     Rollers::new(geometry, None)
 }

