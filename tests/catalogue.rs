@@ -401,7 +401,7 @@ fn published_ratings_of_cylindrical_roller_bearings() {
     ];
     for (name, dynamic, static_) in published {
         let text = rollers_of(name).unwrap().unwrap();
-        let of: RollersSection = read(toml::from_str::<toml::Table>(&text).unwrap()).unwrap();
+        let of: RollersSection = read(&toml::from_str::<toml::Table>(&text).unwrap().into()).unwrap();
         let sizes = [of.diameter.0, of.length.0, of.pitch_diameter.0];
         let own = Ratings::new(of.count, sizes, 1.0, None);
         let errors =
@@ -425,7 +425,7 @@ fn published_ratings_of_cylindrical_roller_bearings() {
                 assert_eq!((series, code), ("10", 4));
                 continue;
             };
-            let of: RollersSection = read(toml::from_str::<toml::Table>(&text).unwrap()).unwrap();
+            let of: RollersSection = read(&toml::from_str::<toml::Table>(&text).unwrap().into()).unwrap();
             let own = Ratings::new(of.count, [of.diameter.0, of.length.0, of.pitch_diameter.0], 1.0, None);
             assert!(own.static_load_rating > 0.93 * before, "{series}{code:02}");
             before = own.static_load_rating;
