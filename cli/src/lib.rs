@@ -1,5 +1,5 @@
 //! Parts of the command line: packages, results of runs, their numerical errors, pages that show them, motions of cages, sweeps of many cases, systems of
-//! connected packages, and the study of accuracy against CPU time.
+//! connected packages, gearboxes from other programs' files, and the study of accuracy against CPU time.
 
 pub mod cage;
 pub mod cost;
@@ -12,6 +12,7 @@ pub mod modes;
 pub mod package;
 pub mod page;
 pub mod report;
+pub mod rexs;
 pub mod sweep;
 pub mod system;
 pub mod watch;

@@ -6,9 +6,11 @@ mod contact;
 mod cost;
 mod effects;
 mod equilibrium;
+mod export;
 mod field;
 mod film;
 mod identify;
+mod import;
 mod interrupt;
 mod modes;
 mod place;
@@ -62,6 +64,10 @@ enum Command {
     Scene(scene::Options),
     /// Write a scene of a catalogue bearing, by name or by dimensions and load ratings, with estimated internal geometry.
     Bearing(bearing::Options),
+    /// Read a gearbox from a REXS file, XML, JSON or zip, and write it as a machine: shafts, gears, bearings, oil, loads and their spectrum.
+    Import(import::Options),
+    /// Write a machine as a REXS file, for programs that read gearboxes.
+    Export(export::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
     /// Make one page of results: drawing, plots, spectra, playback; of a run, of several, or of a sweep.
@@ -179,6 +185,8 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         }
         Command::Scene(options) => scene::run(&options)?,
         Command::Bearing(options) => bearing::run(&options)?,
+        Command::Import(options) => import::run(&options)?,
+        Command::Export(options) => export::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,
         Command::Report(options) => report::run(&options)?,
         Command::System(options) => system::run(&options)?,

@@ -18,6 +18,7 @@ mod phases;
 mod rating;
 mod refusals;
 mod report;
+mod rexs;
 mod runs;
 mod same_bits;
 mod scene_keys;

@@ -1,0 +1,254 @@
+//! A machine's file as a gearbox: what of it a REXS file can hold.
+
+use std::error::Error;
+use std::fmt::Display;
+use std::path::Path;
+
+use roulement::scene::machine::MachineScene;
+use roulement::scene::system::SystemScene;
+use roulement::schema::schedule::Schedule;
+use roulement::schema::{AxialSeat, AxialTaken, MountingDirection, PointLoad, Stiffness, StiffnessSection};
+use toml::Table;
+
+use super::gearbox::{
+    Bearing, Coupling, Disc, Duty, Gear, Gearbox, Kind, Load, Material, Mesh, STEEL, Section, Shaft, Springs,
+};
+use super::gears;
+
+/// [-] by how much a disc may differ from a gear's body, by the digits of a file.
+const SAME_BODY: f64 = 1e-3;
+
+/// Reads a machine, and tells what of it the format does not have.
+///
+/// # Errors
+/// If the file is refused, or has no machine that the format can hold.
+pub fn gearbox(path: &Path, notes: &mut Vec<String>) -> Result<(Gearbox, Vec<Gearbox>), Box<dyn Error>> {
+    let machine = MachineScene::load(path)?;
+    let MachineScene::Shaft(scene) = &machine else {
+        return Err(format!(
+            "{}: a bearing alone: REXS files have gearboxes, write the file of a machine ([[shaft]])",
+            path.display()
+        )
+        .into());
+    };
+    let table: Table = std::fs::read_to_string(path)?.parse()?;
+    let own = of(scene, &table, notes)?;
+    let mut cases = vec![];
+    for of_duty in &scene.duty {
+        let told = |why: &dyn Display| format!("duty {}: {why}", of_duty.name);
+        match machine.under(of_duty).map_err(|why| told(&why))? {
+            MachineScene::Shaft(changed) => cases.push(of(&changed, &table, &mut vec![])?),
+            MachineScene::Bearing(_) => return Err(told(&"it is no machine any more").into()),
+        }
+    }
+    Ok((own, cases))
+}
+
+/// The gearbox of a scene at time 0, whose bearings have the designations of a table.
+fn of(scene: &SystemScene, table: &Table, notes: &mut Vec<String>) -> Result<Gearbox, String> {
+    let mut found = Gearbox { title: scene.title.clone(), ..Gearbox::default() };
+    let gravity = scene.gravity.at(0.0);
+    found.gravity = (gravity.norm() > 0.0).then(|| gravity.into());
+    let lacks = [
+        (!scene.housings.is_empty(), "[[housing]]: bearings sit in the casing"),
+        (scene.frame.is_some(), "[frame]"),
+        (!scene.phases.is_empty(), "[[phase]]"),
+        (scene.schedules().any(Schedule::is_scripted), "what changes over time: values at time 0"),
+        (scene.gears().next().is_some(), "[[shaft.gear]]"),
+        (scene.rotating().next().is_some(), "[[shaft.rotating]]"),
+    ];
+    notes.extend(lacks.iter().filter(|(has, _)| *has).map(|(_, what)| format!("not written: {what}")));
+    for section in &scene.shafts {
+        if section.section.is_empty() {
+            return Err(format!(
+                "shaft \"{}\": it has no beams ([[shaft.section]]), and shafts of REXS are made of sections",
+                section.name
+            ));
+        }
+        let material = &section.material;
+        let material = Material {
+            youngs_modulus: material.youngs_modulus.0,
+            poisson_ratio: material.poisson_ratio,
+            density: material.density.0,
+        };
+        let load = |of: &PointLoad| Load {
+            name: of.name.clone(),
+            position: of.position.0,
+            force: of.force.at(0.0).into(),
+            moment: of.moment.at(0.0).into(),
+            ..Load::default()
+        };
+        let mut sections: Vec<Section> = section
+            .section
+            .iter()
+            .map(|of| Section {
+                from: of.from.0,
+                to: of.to.0,
+                outer: of.outer_diameter.0,
+                inner: of.inner_diameter.map_or(0.0, |inner| inner.0),
+            })
+            .collect();
+        sections.sort_by(|one, other| one.from.total_cmp(&other.from));
+        found.shafts.push(Shaft {
+            name: section.name.clone(),
+            origin: section.place(0.0),
+            way: 1.0,
+            speed: section.speed.as_ref().map(|speed| speed.at(0.0)),
+            torque: section.torque.as_ref().map(|torque| torque.at(0.0)),
+            drive_position: section.drive_position.map(|position| position.0),
+            material: (material != STEEL).then_some(material),
+            sections,
+            discs: section
+                .disc
+                .iter()
+                .map(|of| Disc {
+                    position: of.position.0,
+                    mass: of.mass.0,
+                    polar: of.polar_inertia.0,
+                    transverse: of.transverse_inertia.0,
+                })
+                .collect(),
+            loads: section.load.iter().map(load).collect(),
+            ..Shaft::default()
+        });
+    }
+    for mesh in &scene.meshes {
+        let section = &mesh.section;
+        let gear = |index: usize| {
+            let of = &section.gears[index];
+            Gear {
+                shaft: mesh.shafts[index],
+                position: of.position.0,
+                teeth: of.teeth,
+                inside: of.inside,
+                face_width: of.face_width.0,
+                profile_shift: of.profile_shift,
+            }
+        };
+        found.meshes.push(Mesh {
+            name: section.name.clone(),
+            module: section.normal_module.0,
+            pressure_angle: section.pressure_angle.map_or(20_f64.to_radians(), |angle| angle.0),
+            helix_angle: section.helix_angle.map_or(0.0, |angle| angle.0),
+            gears: [gear(0), gear(1)],
+        });
+    }
+    bearings(scene, table, &mut found, notes);
+    let mut bodies: Vec<Shaft> =
+        found.shafts.iter().map(|of| Shaft { discs: vec![], ..of.clone() }).collect();
+    gears::bodies(&found.meshes, &mut bodies);
+    for (shaft, with_bodies) in found.shafts.iter().zip(&bodies) {
+        // The body of a gear follows from the gear.
+        let follows = |of: &Disc| {
+            with_bodies.discs.iter().any(|body| {
+                (of.position - body.position).abs() < 1e-9 && (of.mass / body.mass - 1.0).abs() < SAME_BODY
+            })
+        };
+        for disc in shaft.discs.iter().filter(|of| !follows(of)) {
+            let told = "which is no gear's body up to its reference cylinder";
+            notes.push(format!(
+                "not written: shaft \"{}\": disc at {} mm, {told}",
+                shaft.name,
+                disc.position * 1e3
+            ));
+        }
+    }
+    for of in &scene.duty {
+        found.duty.push(Duty { name: of.name.clone(), share: of.part(), set: vec![] });
+    }
+    Ok(found)
+}
+
+/// Designation of a bearing in the file's own text.
+fn designation(table: &Table, name: &str) -> Option<String> {
+    let entries = table.get("bearing")?.as_array()?;
+    let own = entries.iter().find(|of| of.get("name").and_then(|name| name.as_str()) == Some(name))?;
+    Some(own.get("catalogue")?.as_str()?.to_owned())
+}
+
+fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut Vec<String>) {
+    for of in &scene.bearings {
+        let mounting = &of.mounting;
+        let (offset, misalignment) = mounting.bore();
+        let kind = match designation(table, &of.name) {
+            Some(name) => Kind::Catalogue(name),
+            None => {
+                let bearing = &of.scene.bearing;
+                let mut geometry = Table::new();
+                for (key, number) in [
+                    ("balls", Some(bearing.balls as f64)),
+                    ("ball_diameter", Some(bearing.ball_diameter.0)),
+                    ("pitch_diameter", Some(bearing.pitch_diameter.0)),
+                    ("inner_conformity", Some(bearing.inner_conformity)),
+                    ("outer_conformity", Some(bearing.outer_conformity)),
+                    ("contact_angle", bearing.contact_angle.map(|angle| angle.0)),
+                    ("diametral_clearance", bearing.diametral_clearance.map(|clearance| clearance.0)),
+                ] {
+                    geometry.extend(number.map(|number| (key.to_owned(), toml::Value::Float(number))));
+                }
+                Kind::Scene(geometry.to_string())
+            }
+        };
+        if mounting.preload.force.is_some() {
+            notes.push(format!("not written: bearing \"{}\": preload by a force", of.name));
+        }
+        found.bearings.push(Bearing {
+            name: of.name.clone(),
+            shaft: of.shaft,
+            outer_shaft: of.outer_shaft,
+            position: mounting.position.0,
+            kind,
+            held: mounting.axial == AxialSeat::Held,
+            reversed: mounting.direction == MountingDirection::Against,
+            preload: mounting.preload.displacement.map_or(0.0, |way| way.0),
+            offset: [offset.y, offset.z],
+            misalignment: [misalignment.y, misalignment.z],
+            ..Bearing::default()
+        });
+    }
+    for of in &scene.springs {
+        let springs = springs(&of.stiffness, &of.name, notes);
+        match of.second {
+            Some(second) => found.couplings.push(Coupling {
+                name: of.name.clone(),
+                shafts: [of.shaft, second],
+                position: of.position,
+                springs,
+                ..Coupling::default()
+            }),
+            None => found.bearings.push(Bearing {
+                name: of.name.clone(),
+                shaft: of.shaft,
+                position: of.position,
+                kind: Kind::Springs(springs),
+                held: true,
+                offset: [of.bore.0.y, of.bore.0.z],
+                misalignment: [of.bore.1.y, of.bore.1.z],
+                ..Bearing::default()
+            }),
+        }
+    }
+}
+
+/// Springs that are numbers; of tables and dampers it is told.
+fn springs(of: &StiffnessSection, name: &str, notes: &mut Vec<String>) -> Springs {
+    let ways = [&of.radial, &of.axial].map(|given| given.as_ref().map(Stiffness::number));
+    let turns = [&of.tilt, &of.torsion].map(|given| given.as_ref().map(Stiffness::number));
+    let numbers = [ways[0], ways[1], turns[0], turns[1]];
+    let lacks = [
+        (numbers.contains(&Some(None)), "a stiffness by a table"),
+        (of.gap.is_some(), "gap"),
+        (of.radial_damping.is_some() || of.axial_damping.is_some(), "damping"),
+        (of.tilt_damping.is_some() || of.torsion_damping.is_some(), "damping of turns"),
+    ];
+    notes.extend(
+        lacks.iter().filter(|(has, _)| *has).map(|(_, what)| format!("not written: \"{name}\": {what}")),
+    );
+    let [radial, axial, tilt, torsion] = numbers.map(|number| number.flatten().unwrap_or(0.0));
+    let way = match of.axial_way {
+        AxialTaken::Both => 0.0,
+        AxialTaken::Along => 1.0,
+        AxialTaken::Against => -1.0,
+    };
+    Springs { radial, axial, way, tilt, torsion }
+}
