@@ -93,6 +93,8 @@ fn workplace(name: &str) -> Scratch {
     write("examples/gearbox/three_stage.toml", &gearbox.replace("\"5 ms\"", "\"0.2 ms\""));
     let planetary = fs::read_to_string(root().join("examples/gearbox/planetary.toml")).unwrap();
     write("examples/gearbox/planetary.toml", &planetary.replace("\"20 ms\"", "\"0.2 ms\""));
+    let rexs = "examples/gearbox/two_shafts.rexsj";
+    write(rexs, &fs::read_to_string(root().join(rexs)).unwrap());
     for scene in ["whirl/one", "whirl/two", "effects/loss_of_lubrication"] {
         write(&format!("scenes/{scene}.toml"), &fs::read_to_string(common::scene(scene)).unwrap());
     }

@@ -7,7 +7,7 @@ use super::*;
 /// A self-written gearbox as programs of version 1.0 write it: XML, gears where their teeth begin, names of bearings in `name`.
 const OLD: &str = include_str!("../data/rexs/two_shafts_1.0.rexs");
 /// The same one as those of version 1.4 do: JSON, the second shaft from its other end, vectors in base64, loads in a spectrum.
-const NEW: &str = include_str!("../data/rexs/two_shafts_1.4.rexsj");
+const NEW: &str = include_str!("../../../examples/gearbox/two_shafts.rexsj");
 
 /// The machine of a file's text, and what is told of it.
 fn imported(scratch: &Scratch, name: &str, bytes: &[u8]) -> (String, String) {
