@@ -1,5 +1,5 @@
 //! Parts of the command line: packages, results of runs, their numerical errors, pages that show them, motions of cages, sweeps of many cases, systems of
-//! connected packages, gearboxes from other programs' files, and the study of accuracy against CPU time.
+//! connected packages, gearboxes from other programs' files, kinds of files, and the study of accuracy against CPU time.
 
 pub mod cage;
 pub mod cost;
@@ -7,6 +7,7 @@ pub mod error;
 pub mod exact;
 pub mod field;
 pub mod film;
+pub mod kinds;
 pub mod measure;
 pub mod modes;
 pub mod package;

@@ -11,6 +11,7 @@ mod race;
 pub mod ranges;
 mod scales;
 pub mod system;
+mod typical;
 mod validate;
 
 use std::path::Path;

@@ -4,6 +4,7 @@
 use toml::Table;
 
 use super::Scene;
+use super::typical::unusual;
 use crate::effects::estimate::Outline;
 use crate::schema::numbers::four;
 
@@ -22,6 +23,13 @@ const ROUGHEST: f64 = 0.6;
 impl Scene {
     /// Notes and warnings about the scene as it is written, a sentence each.
     pub fn notes(&self) -> Vec<String> {
+        let mut notes = self.doubts();
+        notes.extend(unusual(&self.source));
+        notes
+    }
+
+    /// The same, but for single numbers: those of a machine's bearing stand in the file of the machine.
+    pub(super) fn doubts(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if let Some(note) = self.default_conformities() {
             notes.push(note);

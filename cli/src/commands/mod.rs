@@ -2,6 +2,7 @@
 
 mod bearing;
 mod cage;
+mod check;
 mod contact;
 mod cost;
 mod effects;
@@ -36,6 +37,7 @@ use roulement::analysis::auto;
 use roulement::interface::model_description::{Version, all, render_as};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
+use roulement_cli::kinds::{Kind, other_kind};
 use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
@@ -50,6 +52,8 @@ struct Arguments {
 enum Command {
     /// Simulate a scene: result table, plots, summary.
     Run(run::Options),
+    /// Say what files are, whether they can be read, what they would run and how long that would take; with notes on numbers that are unusual.
+    Check(check::Options),
     /// Solve the quasi-static equilibrium of a scene; of a shaft also its natural frequencies and critical speeds.
     Equilibrium(equilibrium::Options),
     /// Find the small motions of rings, shafts and cage about the running state, which grow or decay, over the speed.
@@ -125,11 +129,17 @@ fn load(path: &Path) -> Result<MachineScene, Box<dyn Error>> {
 
 /// The same, for an importer of its package or not.
 fn load_for(path: &Path, importer: bool) -> Result<MachineScene, Box<dyn Error>> {
-    let scene = MachineScene::load(path)?;
+    let scene =
+        MachineScene::load(path).map_err(|why| or_kind(path, &[Kind::Bearing, Kind::Machine], why))?;
     tell(scene.notes());
     let (scene, found_out) = auto::resolve_machine(scene, importer)?;
     tell(found_out);
     Ok(scene)
+}
+
+/// Why a file is refused: as it is of another kind than a command takes, or as it says itself.
+fn or_kind(path: &Path, wanted: &[Kind], why: impl Error + 'static) -> Box<dyn Error> {
+    other_kind(path, wanted).map_or_else(|| why.into(), Into::into)
 }
 
 /// Notes and warnings.
@@ -185,6 +195,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         }
         Command::Scene(options) => scene::run(&options)?,
         Command::Bearing(options) => bearing::run(&options)?,
+        Command::Check(options) => return check::run(&options),
         Command::Import(options) => import::run(&options)?,
         Command::Export(options) => export::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,

@@ -12,6 +12,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::machine::MachineScene;
 use roulement_cli::error::MOST_ROUNDS;
+use roulement_cli::kinds::Kind;
 use roulement_cli::page::record;
 use roulement_cli::report::results::Choice;
 use roulement_cli::sweep::all::{Sweep, threads as cores};
@@ -23,7 +24,7 @@ use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::place::{Place, Said};
 use super::player::Player;
 use super::run::simulate;
-use super::{say, tell};
+use super::{or_kind, say, tell};
 
 /// Exit code of a sweep whose summary is there, but not a result of every case.
 const INCOMPLETE: u8 = 4;
@@ -85,7 +86,7 @@ impl Format {
 /// If the cases or the scene cannot be read, no case can be run, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let Options { cases: table, scene, output, columns, tables, growth, threads, runs } = options;
-    let cases = Cases::load(&table)?;
+    let cases = Cases::load(&table).map_err(|why| or_kind(&table, &[Kind::Sweep, Kind::Csv], why))?;
     let Some(scene) = scene.or_else(|| cases.scene.clone()) else {
         return Err(format!("{}: name the base scene by --scene", table.display()).into());
     };

@@ -4,9 +4,10 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use roulement_cli::kinds::Kind;
 use roulement_cli::system;
 
-use super::{say, tell};
+use super::{or_kind, say, tell};
 
 /// Options of `roulement system`.
 #[derive(Args)]
@@ -26,7 +27,8 @@ pub struct Options {
 /// # Errors
 /// If the description or a package is wrong, or files cannot be read or written.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    let written = system::write(&options.description, &options.output, &options.library)?;
+    let written = system::write(&options.description, &options.output, &options.library)
+        .map_err(|why| or_kind(&options.description, &[Kind::System], why))?;
     tell(written.notes.into_iter().map(|note| format!("note: {note}")));
     Ok(say(&format!("{}\n{}\n", written.ssp.display(), written.osp.display()))?)
 }

@@ -134,7 +134,7 @@ pub fn drives(
                 }
             }
             [(shaft, turns)] => {
-                found.torques[*shaft] = Some(found.torques[*shaft].unwrap_or(0.0) - power / turns)
+                found.torques[*shaft] = Some(found.torques[*shaft].unwrap_or(0.0) - power / turns);
             }
             several => {
                 // The shaft with the speed takes what is left of all.

@@ -111,7 +111,7 @@ impl Place {
                 self.model.application = program.join(" ").trim().to_owned();
             }
             "relation" => {
-                self.model.relations.push(Relation { kind: given(element, "type")?, roles: vec![] })
+                self.model.relations.push(Relation { kind: given(element, "type")?, roles: vec![] });
             }
             "ref" => {
                 let role = (given(element, "role")?, id(&given(element, "id")?)?);

@@ -93,6 +93,19 @@ pub struct Written {
     pub notes: Vec<String>,
 }
 
+/// What a description is of, in one line: its components and connections.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn summary(file: &Path) -> Result<String, SystemError> {
+    let text = regular::text(file).map_err(file_error("read", file))?;
+    let refused = |why| SystemError::Description { file: file.display().to_string(), why };
+    let of = Description::read(&text).map_err(refused)?;
+    let names: Vec<&str> = of.components.iter().map(|of| of.name.as_str()).collect();
+    let (step, stop) = (of.step * 1e6, of.stop * 1e3);
+    Ok(format!("{}, {} connections; steps of {step} us to {stop} ms", names.join(", "), of.connections.len()))
+}
+
 /// Writes both forms of the system that a file describes into a folder, which is made if missing. Scenes are packed with
 /// these libraries.
 ///

@@ -4,6 +4,7 @@
 mod alarms;
 mod bearing;
 mod cage;
+mod check;
 #[path = "../common/mod.rs"]
 mod common;
 mod contacts;

@@ -26,6 +26,7 @@ use serde::Deserialize;
 use spring::SceneSpring;
 use toml::{Table, Value};
 
+use super::typical::unusual;
 use super::{FrameMotion, Level, Ranges, Scene, SceneError};
 use crate::catalogue;
 use crate::effects::frame::FrameSection;
@@ -370,9 +371,9 @@ impl SystemScene {
     pub fn notes(&self) -> Vec<String> {
         let of = |mounted: &MountedScene| {
             let name = mounted.name.clone();
-            mounted.scene.notes().into_iter().map(move |note| format!("bearing {name}: {note}"))
+            mounted.scene.doubts().into_iter().map(move |note| format!("bearing {name}: {note}"))
         };
-        self.bearings.iter().flat_map(of).collect()
+        self.bearings.iter().flat_map(of).chain(unusual(&self.source)).collect()
     }
 
     /// Motion of the machine's frame at a time \[s], and gravity in it.
