@@ -52,10 +52,10 @@ impl Instance {
     ) -> Outcome {
         let unknowns = self.unknowns(unknowns)?;
         let columns = self.columns_by(knowns, changes)?;
-        for (unknown, result) in unknowns.iter().zip(results) {
+        for (unknown, result) in unknowns.iter().zip(&mut *results) {
             *result = columns.iter().zip(changes).map(|(column, change)| column[*unknown] * change).sum();
         }
-        Ok(())
+        all_finite(results)
     }
 
     /// Changes that knowns (inputs or their rates) make for weights of the unknowns (outputs): the weights times the matrix.
@@ -71,10 +71,10 @@ impl Instance {
     ) -> Outcome {
         let unknowns = self.unknowns(unknowns)?;
         let columns = self.columns_by(knowns, weights)?;
-        for (column, result) in columns.iter().zip(results) {
+        for (column, result) in columns.iter().zip(&mut *results) {
             *result = unknowns.iter().zip(weights).map(|(unknown, weight)| column[*unknown] * weight).sum();
         }
-        Ok(())
+        all_finite(results)
     }
 
     /// Place of an input that there are derivatives by.
@@ -147,5 +147,13 @@ impl Instance {
         }
         self.columns = Some(columns);
         Ok(())
+    }
+}
+
+/// Refuses results that are none: of inputs so large that their changes vanish beside them, or of changes whose product overflows.
+fn all_finite(results: &[f64]) -> Outcome {
+    match results.iter().find(|result| !result.is_finite()) {
+        Some(result) => error(format!("a derivative is {result}: an input or a change is too large for it")),
+        None => Ok(()),
     }
 }
