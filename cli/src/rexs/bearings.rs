@@ -1,6 +1,6 @@
 //! Bearings and couplings of a REXS model: by the catalogue, by dimensions and load ratings, by their inner geometry, or by their stiffness.
 
-use roulement::catalogue::{Request, scene_of};
+use roulement::catalogue::{Request, rollers_of, scene_of};
 use toml::{Table, Value};
 
 use super::frame::{Axes, Frame};
@@ -39,7 +39,8 @@ pub fn bearings(
         };
         let (shaft, other, position, kind) = match sides {
             [Some(shaft), other] if is_bearing => {
-                (shaft, other, place("inner", shaft)?, kind(model, of, shafts[shaft].way, notes)?)
+                let kind = kind(model, of, shafts[shaft].way, other.is_some(), notes)?;
+                (shaft, other, place("inner", shaft)?, kind)
             }
             [None, Some(shaft)] if is_bearing => {
                 let kind = by_stiffness(of, shafts[shaft].way, "its inner ring stands still", notes)?;
@@ -110,12 +111,15 @@ fn bearing(
         Ok([turned.y, turned.z])
     };
     let takes = of.text("axial_force_absorption");
-    let is_simulated = !matches!(kind, Kind::Springs(_));
+    let has_balls = kind.has_balls();
     let one_way = takes.map_or(0.0, |takes| one_way(takes, way));
     let is_angular = of.text("bearing_type") == Some("angular_contact_ball_bearing");
-    if is_simulated && one_way != 0.0 && !is_angular {
+    if has_balls && one_way != 0.0 && !is_angular {
         notes
             .push(format!("{of}: it takes axial force one way in the file; its ring is held both ways here"));
+    }
+    if matches!(kind, Kind::Rollers(_)) && takes == Some("no_direction") {
+        notes.push(format!("{of}: it takes no axial force in the file; its ribs, if it has some, do here"));
     }
     let preload = of.number("preload_distance")?.unwrap_or(0.0);
     let name = names.of(of, "bearing");
@@ -123,11 +127,11 @@ fn bearing(
         comment: comment(of, &name),
         name,
         held: takes != Some("no_direction"),
-        reversed: is_simulated && is_angular && one_way < 0.0,
-        preload: if is_simulated && is_angular { preload } else { 0.0 },
+        reversed: has_balls && is_angular && one_way < 0.0,
+        preload: if has_balls && is_angular { preload } else { 0.0 },
         offset: across(["misalignment_in_v_direction", "misalignment_in_w_direction"])?,
         misalignment: across(["angular_misalignment_around_v_axis", "angular_misalignment_around_w_axis"])?,
-        oil: if is_simulated { oil(model)? } else { None },
+        oil: if has_balls { oil(model)? } else { None },
         kind,
         ..Bearing::default()
     })
@@ -155,12 +159,23 @@ fn is_coupling(of: &Component) -> bool {
 }
 
 /// What a bearing is: by the catalogue, by what the file says of it, or by its stiffness.
-fn kind(model: &Model, of: &Component, way: f64, notes: &mut Vec<String>) -> Result<Kind, String> {
+fn kind(
+    model: &Model,
+    of: &Component,
+    way: f64,
+    between_shafts: bool,
+    notes: &mut Vec<String>,
+) -> Result<Kind, String> {
     if of.kind == "concept_bearing" {
         return by_stiffness(of, way, "a bearing without a type", notes);
     }
     let rows = of.number("number_of_bearing_rows")?.unwrap_or(1.0);
     let type_ = of.text("bearing_type").unwrap_or_default();
+    if let Some(name) = designation(of).filter(|_| !between_shafts && rows <= 1.0)
+        && let Some(Ok(_)) = rollers_of(name)
+    {
+        return Ok(Kind::Rollers(name.to_owned()));
+    }
     if rows > 1.0 || !matches!(type_, "" | "radial_grooved_ball_bearing" | "angular_contact_ball_bearing") {
         let why = if rows > 1.0 { format!("{rows} rows") } else { type_.replace('_', " ") };
         return by_stiffness(of, way, &why, notes);

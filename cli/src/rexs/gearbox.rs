@@ -192,6 +192,8 @@ pub struct Bearing {
 pub enum Kind {
     /// A designation of the catalogue.
     Catalogue(String),
+    /// A designation of the catalogue's rollers.
+    Rollers(String),
     /// Keys of a scene, in one line of TOML.
     Scene(String),
     /// Springs.
@@ -201,6 +203,13 @@ pub enum Kind {
 impl Default for Kind {
     fn default() -> Self {
         Self::Springs(Springs::default())
+    }
+}
+
+impl Kind {
+    /// Is it a ball bearing, whose seat may slide and which has oil?
+    pub fn has_balls(&self) -> bool {
+        matches!(self, Self::Catalogue(_) | Self::Scene(_))
     }
 }
 

@@ -207,20 +207,27 @@ fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut
         });
     }
     for of in &scene.springs {
-        let springs = springs(&of.stiffness, &of.name, notes);
+        let kind = match (of.rollers.is_some(), designation(table, &of.name)) {
+            (true, Some(name)) => Kind::Rollers(name),
+            (true, None) => {
+                notes.push(format!("not written: bearing \"{}\", rollers without a designation", of.name));
+                continue;
+            }
+            (false, _) => Kind::Springs(springs(&of.stiffness, &of.name, notes)),
+        };
         match of.second {
             Some(second) => found.couplings.push(Coupling {
                 name: of.name.clone(),
                 shafts: [of.shaft, second],
                 position: of.position,
-                springs,
+                springs: springs(&of.stiffness, &of.name, &mut vec![]),
                 ..Coupling::default()
             }),
             None => found.bearings.push(Bearing {
                 name: of.name.clone(),
                 shaft: of.shaft,
                 position: of.position,
-                kind: Kind::Springs(springs),
+                kind,
                 held: true,
                 offset: [of.bore.0.y, of.bore.0.z],
                 misalignment: [of.bore.1.y, of.bore.1.z],

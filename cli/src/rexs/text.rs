@@ -227,20 +227,11 @@ fn bearing(file: &mut File, of: &Bearing, gearbox: &Gearbox) {
     file.section("bearing");
     file.key("name", &format!("{}{}", quoted(&of.name), behind(&of.comment)));
     file.key("shaft", &quoted(&gearbox.shafts[of.shaft].name));
-    let is_simulated = match &of.kind {
-        Kind::Catalogue(name) => {
-            file.key("catalogue", &quoted(name));
-            true
-        }
-        Kind::Scene(scene) => {
-            file.key("scene", scene);
-            true
-        }
-        Kind::Springs(of) => {
-            file.key("stiffness", &springs(of));
-            false
-        }
-    };
+    match &of.kind {
+        Kind::Catalogue(name) | Kind::Rollers(name) => file.key("catalogue", &quoted(name)),
+        Kind::Scene(scene) => file.key("scene", scene),
+        Kind::Springs(of) => file.key("stiffness", &springs(of)),
+    }
     let mut mounting = vec![format!("position = {}", quantity(of.position, "m"))];
     if let Some(outer) = of.outer_shaft {
         mounting.push(format!("outer_shaft = {}", quoted(&gearbox.shafts[outer].name)));
@@ -248,7 +239,7 @@ fn bearing(file: &mut File, of: &Bearing, gearbox: &Gearbox) {
     if of.reversed {
         mounting.push("direction = \"-x\"".into());
     }
-    if is_simulated && !of.held && of.outer_shaft.is_none() {
+    if of.kind.has_balls() && !of.held && of.outer_shaft.is_none() {
         mounting.push("axial = \"free\"".into());
     }
     if of.preload != 0.0 {

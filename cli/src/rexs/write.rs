@@ -278,7 +278,7 @@ fn side(document: &mut Document, of: (&'static str, u64), inner: u64, outer: (&'
 
 fn bearing(document: &mut Document, of: &Bearing, gearbox: &Gearbox, shafts: &[u64]) {
     let kind = match &of.kind {
-        Kind::Catalogue(_) => "rolling_bearing_with_catalog_geometry",
+        Kind::Catalogue(_) | Kind::Rollers(_) => "rolling_bearing_with_catalog_geometry",
         Kind::Scene(_) => "rolling_bearing_with_detailed_geometry",
         Kind::Springs(_) => "concept_bearing",
     };
@@ -305,6 +305,10 @@ fn bearing(document: &mut Document, of: &Bearing, gearbox: &Gearbox, shafts: &[u
     }
     match &of.kind {
         Kind::Springs(of) => springs(part, of),
+        Kind::Rollers(name) => {
+            part.text("catalogue_designation", name);
+            part.text("bearing_type", "radial_roller_bearing");
+        }
         Kind::Catalogue(name) => {
             part.text("catalogue_designation", name);
             let digits: String = name.chars().filter(char::is_ascii_digit).collect();
