@@ -126,14 +126,22 @@ fn scene(path: &Path) -> Result<Vec<String>, Box<dyn Error>> {
     lines.extend(found_out);
     let of = match &scene {
         MachineScene::Bearing(scene) => format!("one bearing of {} balls", scene.bearing.balls),
-        MachineScene::Shaft(system) => format!(
-            "{} shafts, {} bearings, {} meshes, {} springs, {} housings",
-            system.shafts.len(),
-            system.bearings.len(),
-            system.meshes.len(),
-            system.springs.len(),
-            system.housings.len()
-        ),
+        MachineScene::Shaft(system) => [
+            (system.shafts.len(), "shaft", "shafts"),
+            (system.bearings.len(), "bearing", "bearings"),
+            (system.meshes.len(), "mesh", "meshes"),
+            (
+                system.springs.len(),
+                "bearing or coupling without states",
+                "bearings and couplings without states",
+            ),
+            (system.housings.len(), "housing", "housings"),
+        ]
+        .into_iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, one, several)| format!("{count} {}", if count == 1 { one } else { several }))
+        .collect::<Vec<_>>()
+        .join(", "),
     };
     let rows = Rows::of_scene(&scene);
     lines.insert(
