@@ -1,5 +1,6 @@
 //! The immutable model of a run: bearing, bodies, and the constants of their contacts.
 
+pub mod balance;
 mod ball_state;
 pub mod bearing;
 pub mod bodies;

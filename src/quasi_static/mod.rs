@@ -4,7 +4,7 @@
 //! sum is a wrench between the rings with its exact derivatives ([`rings`]). At a given speed the forces derive from a potential, but for the
 //! gyroscopic couple: what rings do against them is stored, and nothing depends on the way that led there.
 //!
-//! Rollers ([`roller`]) are the same between lines and ribs; their sum ([`rollers`]) is a link between a shaft and what the outer ring sits in.
+//! Rollers are a link between a shaft and what the outer ring sits in ([`crate::model::link::rollers`]).
 //!
 //! What this level does not know is what elements need time for: slip and skidding, a cage of its own, spin that lags behind, friction at the
 //! rings, the weight of elements, and waves and spalls of the surfaces.
@@ -12,5 +12,3 @@
 pub mod ball;
 pub mod bearing;
 pub mod rings;
-pub mod roller;
-pub mod rollers;

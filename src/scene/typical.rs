@@ -105,11 +105,11 @@ fn note(number: f64, key: &str, notes: &mut Vec<String>) {
         return;
     }
     let (unit, size) = kind.told;
-    let beyond = if number > largest { largest } else { least };
     notes.push(format!(
-        "note: {key} = {number} has no unit and is {} {unit}, where up to {} {unit} is usual: \"{number} {}\" meant?",
+        "note: {key} = {number} has no unit and is {} {unit}, where {} to {} {unit} is usual: \"{number} {}\" meant?",
         four(&(number / size)),
-        four(&(beyond / size)),
+        four(&(least / size)),
+        four(&(largest / size)),
         kind.meant
     ));
 }

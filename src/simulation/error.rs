@@ -81,6 +81,17 @@ pub enum SimulationError {
         /// \[N] force on the ball that is left.
         unbalanced: f64,
     },
+    /// A roller of a bearing found no balance.
+    #[error(
+        "at {} s a roller of bearing \"{bearing}\" found no balance: its rings are too far from where it can lie between them; the load or the tilt is too large",
+        four(.time)
+    )]
+    RollersOutOfBalance {
+        /// \[s] time.
+        time: f64,
+        /// Its name.
+        bearing: String,
+    },
     /// A contact is deeper than Hertz's theory reaches.
     #[error(
         "at {} s ball {ball} is pressed into the {race} race by {approach:.3e} m: more than {MAX_APPROACH} of its \

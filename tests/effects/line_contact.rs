@@ -2,8 +2,8 @@
 
 use nalgebra::Vector6;
 use roulement::effects::rating::line_contact::Ratings;
-use roulement::quasi_static::roller::Profile;
-use roulement::quasi_static::rollers::{Geometry, Rollers};
+use roulement::model::link::roller::Profile;
+use roulement::model::link::rollers::{Geometry, Rollers};
 
 #[test]
 fn published_factors_of_line_contact() {

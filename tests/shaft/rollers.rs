@@ -165,24 +165,24 @@ fn closed_form_a_pair_of_tapered_bearings_has_the_preload_of_its_clearance_and_s
         (links[0].state.force[0], links[1].state.force[0], links[0].rollers.unwrap())
     };
     // Each bearing alone, pressed together by 8 um.
-    let geometry = roulement::quasi_static::rollers::Geometry {
+    let geometry = roulement::model::link::rollers::Geometry {
         count: 17,
         diameter: 7.2e-3,
         length: 10e-3,
         pitch_diameter: 46e-3,
         diametral_clearance: 0.0,
-        profile: roulement::quasi_static::roller::Profile::Logarithmic,
+        profile: roulement::model::link::roller::Profile::Logarithmic,
         ribs: [false; 2],
         axial_clearance: 0.0,
         rib_stiffness: None,
         first_azimuth: 0.0,
-        taper: Some(roulement::quasi_static::rollers::Taper {
+        taper: Some(roulement::model::link::rollers::Taper {
             contact_angle: 14f64.to_radians(),
             roller_angle: 4f64.to_radians(),
             direction: 1.0,
         }),
     };
-    let alone = roulement::quasi_static::rollers::Rollers::new(geometry, None);
+    let alone = roulement::model::link::rollers::Rollers::new(geometry, None);
     let turning = nalgebra::Vector6::ith(3, 1500.0 * std::f64::consts::TAU / 60.0);
     let preload = -alone.force(&nalgebra::Vector6::ith(0, 8e-6), &turning).force[0];
     let (left, right, _) = axial("-8 um", "[0, 0, 0]");

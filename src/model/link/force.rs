@@ -15,6 +15,8 @@ pub struct LinkForce {
     pub stored: f64,
     /// \[W] power that is lost.
     pub damped: f64,
+    /// [-] force that is left on a body inside of the link, one without states, over what may be left: 1 at most in balance, 0 without such bodies.
+    pub unbalanced: f64,
 }
 
 impl LinkForce {
@@ -26,7 +28,13 @@ impl LinkForce {
             by_rate: Matrix6::zeros(),
             stored: 0.0,
             damped: 0.0,
+            unbalanced: 0.0,
         }
+    }
+
+    /// Is all inside of the link in balance? What is not a number is no balance.
+    pub fn is_balanced(&self) -> bool {
+        self.unbalanced <= 1.0
     }
 
     /// The same without the moment about the axis, which is none in the mean over a turn, and without what the turn does.

@@ -11,6 +11,8 @@ mod force;
 pub mod force_table;
 pub mod gear_pair;
 pub mod one_sided;
+pub mod roller;
+pub mod rollers;
 pub mod spring_bearing;
 pub mod tooth_mesh;
 pub mod variation;
@@ -21,8 +23,8 @@ use nalgebra::{DVector, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::structure::{Map, Spin, Structure, StructureState, Turning};
-use crate::quasi_static::rollers::Rollers;
 pub use force::LinkForce;
+use rollers::Rollers;
 use spring_bearing::SpringBearing;
 use tooth_mesh::ToothMesh;
 use variation::Variation;
@@ -111,6 +113,8 @@ pub struct LinkState {
     pub taken: f64,
     /// \[J] lost since the start.
     pub damped: f64,
+    /// [-] force that is left on a body inside of it, over what may be ([`LinkForce::unbalanced`]).
+    pub unbalanced: f64,
 }
 
 impl LinkState {
@@ -180,7 +184,7 @@ impl Link {
         state: impl Fn(usize) -> &'a StructureState,
     ) -> LinkState {
         let [displacement, rate] = self.motion(state);
-        let LinkForce { force, stored, damped, .. } = self.force(&displacement, &rate, None);
+        let LinkForce { force, stored, damped, unbalanced, .. } = self.force(&displacement, &rate, None);
         let powers = [-force.dot(&rate), damped];
         let part = |k: usize| 0.5 * h * (before.powers[k] + powers[k]);
         LinkState {
@@ -192,6 +196,7 @@ impl Link {
             at_start: before.at_start,
             taken: before.taken + part(0),
             damped: before.damped + part(1),
+            unbalanced,
         }
     }
 

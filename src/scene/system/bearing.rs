@@ -8,6 +8,7 @@ use toml::{Table, Value};
 use super::rollers::bearing;
 use super::spring::SceneSpring;
 use super::{MountedScene, SystemLoad};
+use crate::catalogue::CatalogueError;
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::effects::defects::On;
 use crate::model::state::stack;
@@ -15,7 +16,7 @@ use crate::scene::{Drive, Level, Scene, SceneError};
 use crate::schema::units::Acceleration;
 use crate::schema::{
     AxialSeat, Components, HousingSection, Method, Mounting, MountingDirection, RollersSection, ShaftSection,
-    StiffnessSection, explain, regular,
+    StiffnessSection, explain, reader, regular,
 };
 
 /// A bearing as it is written.
@@ -59,11 +60,42 @@ pub struct Shared {
     pub catalogue: Catalogue,
 }
 
-/// Scene of a catalogue bearing by its designation, as a text, and the mass of its outer ring \[kg]; or why there is none. Packages have none,
-/// so that their library is spared the table and its estimates.
-pub type Catalogue = fn(&str) -> Result<(String, f64), String>;
+/// Where bearings are looked up by their designation. Packages have none, so that their library is spared the tables and their estimates.
+#[derive(Clone, Copy)]
+pub struct Catalogue {
+    /// Scene of a ball bearing, as a text, and the mass of its outer ring \[kg]; or why there is none.
+    pub balls: fn(&str) -> Result<(String, f64), String>,
+    /// Keys of the rollers of a roller bearing, as a text; none of another one.
+    pub rollers: fn(&str) -> Option<Result<String, CatalogueError>>,
+}
 
 impl WrittenBearing {
+    /// Takes the rollers of a designation in place of it, changed by what `set` says of them; gives their keys.
+    ///
+    /// # Errors
+    /// With its name and what is wrong.
+    pub fn find_rollers(&mut self, catalogue: Catalogue) -> Result<Option<Table>, SceneError> {
+        let Some(found) = self.catalogue.as_deref().filter(|_| !self.links()).and_then(catalogue.rollers)
+        else {
+            return Ok(None);
+        };
+        let refuse = |key: String, why: String| SceneError::At {
+            place: format!("bearing \"{}\"", self.name),
+            source: Box::new(SceneError::conflict(key, why)),
+        };
+        let text = found.map_err(|why| refuse("bearing.catalogue".into(), why.to_string()))?;
+        let mut keys = toml::from_str::<Table>(&text).unwrap_or_default();
+        if let Some(Value::Table(changes)) = self.set.get("rollers") {
+            keys.extend(changes.clone());
+        }
+        let read = reader::read(&Value::Table(keys.clone()));
+        let rollers =
+            read.map_err(|why| refuse(format!("bearing.set.rollers.{}", why.key()), why.message().into()))?;
+        self.set.remove("rollers");
+        (self.rollers, self.catalogue) = (Some(rollers), None);
+        Ok(Some(keys))
+    }
+
     /// Is it a link between the shaft and what it sits in, by its stiffness or by rollers?
     pub fn links(&self) -> bool {
         self.stiffness.is_some() || self.rollers.is_some()
@@ -109,7 +141,7 @@ impl WrittenBearing {
                 (text, path.parent().unwrap_or(Path::new("")).to_path_buf(), Some(file))
             }
             (None, Some(designation)) => {
-                let (text, outer_ring_mass) = (given.catalogue)(&designation).map_err(|why| {
+                let (text, outer_ring_mass) = (given.catalogue.balls)(&designation).map_err(|why| {
                     inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")))
                 })?;
                 estimated_mass = (mounting.axial == AxialSeat::Free).then_some(outer_ring_mass);

@@ -13,6 +13,7 @@ mod numbers;
 mod planets;
 mod ranges;
 mod rollers;
+mod source;
 pub mod spring;
 
 use std::fmt;
@@ -23,6 +24,7 @@ use mesh::SceneMesh;
 use nalgebra::Vector3;
 pub use numbers::{ShaftNumber, ShaftParameter};
 use serde::Deserialize;
+use source::{standing_alone, write_bearings};
 use spring::SceneSpring;
 use toml::{Table, Value};
 
@@ -172,6 +174,9 @@ pub struct SystemLoad {
     pub output_interval: Time,
 }
 
+/// The catalogue that files are read with.
+const CATALOGUE: Catalogue = Catalogue { balls: catalogue::scene_of, rollers: catalogue::rollers_of };
+
 /// The file as it is written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -236,15 +241,12 @@ impl SystemScene {
         let placed = |error| explain::with_place(error, text, None, file);
         let read = |text: &str, file: Option<&str>| {
             let place = |error, spot| explain::with_place(error, text, spot, file);
-            Self::read(text, folder, catalogue::scene_of, &place)
+            Self::read(text, folder, CATALOGUE, &place)
         };
         match Scene::with_files(text, folder).map_err(placed)? {
             // Lines of the text with the tables are not those that the reader of a message has.
-            Some(text) => read(&with_rollers(&text).map_err(placed)?.unwrap_or(text), None),
-            None => match with_rollers(text).map_err(placed)? {
-                Some(text) => read(&text, None),
-                None => read(text, file),
-            },
+            Some(text) => read(&text, None),
+            None => read(text, file),
         }
     }
 
@@ -253,10 +255,7 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn edited(text: &str) -> Result<Self, SceneError> {
-        match with_rollers(text)? {
-            Some(text) => Self::alone(&text, catalogue::scene_of),
-            None => Self::alone(text, catalogue::scene_of),
-        }
+        Self::alone(text, CATALOGUE)
     }
 
     /// The same, with the catalogue that its bearings are looked up in.
@@ -269,7 +268,11 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn of_package(text: &str) -> Result<Self, SceneError> {
-        Self::alone(text, |_| Err("a package has the scenes of its bearings, and no catalogue".into()))
+        let none = Catalogue {
+            balls: |_| Err("a package has the scenes of its bearings, and no catalogue".into()),
+            rollers: |_| None,
+        };
+        Self::alone(text, none)
     }
 
     /// Reads a system whose schedules name no files.
@@ -280,8 +283,10 @@ impl SystemScene {
         place: &dyn Fn(SceneError, Option<usize>) -> SceneError,
     ) -> Result<Self, SceneError> {
         check::elsewhere(text).map_err(|why| place(why, None))?;
-        let written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;
+        let mut written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;
         let placed = |error| place(error, None);
+        let rollers = written.bearing.iter_mut().map(|bearing| bearing.find_rollers(catalogue));
+        let rollers = rollers.collect::<Result<Vec<_>, _>>().map_err(placed)?;
         check::check(&written).map_err(placed)?;
         let Written {
             title,
@@ -348,7 +353,8 @@ impl SystemScene {
             effects.gravity.is_input = frame.is_some();
             effects.cage.check_frame(frame.is_some()).map_err(placed)?;
         }
-        let source = standing_alone(text, &bearings, &of_shafts, &of_housings, gravity.largest() != 0.0);
+        let weighs = gravity.largest() != 0.0;
+        let source = standing_alone(text, (&bearings, &rollers), &of_shafts, &of_housings, weighs);
         ranges.check(&source, |text| Self::alone(text, catalogue).map(drop)).map_err(placed)?;
         Ok(Self {
             title,
@@ -503,95 +509,5 @@ impl SystemScene {
             solver.min_step = smaller(solver.min_step, own.min_step);
         }
         solver
-    }
-}
-
-/// The text of a system with the rollers of its catalogue bearings in place of their designations; none where it has none.
-fn with_rollers(text: &str) -> Result<Option<String>, SceneError> {
-    let Ok(mut table) = toml::from_str::<Table>(text) else { return Ok(None) };
-    let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
-    let mut found = false;
-    for keys in written.filter_map(Value::as_table_mut) {
-        let designation = keys.get("catalogue").and_then(Value::as_str);
-        let Some(rollers) = designation.and_then(catalogue::rollers_of) else { continue };
-        let name = keys.get("name").and_then(Value::as_str).unwrap_or_default();
-        let refuse = |why: catalogue::CatalogueError| SceneError::At {
-            place: format!("bearing \"{name}\""),
-            source: Box::new(SceneError::conflict("bearing.catalogue", why.to_string())),
-        };
-        let mut rollers = toml::from_str::<Table>(&rollers.map_err(refuse)?).unwrap_or_default();
-        // Changes of the rollers; others are refused where they are read.
-        if let Some(Value::Table(set)) = keys.get_mut("set")
-            && let Some(Value::Table(changes)) = set.remove("rollers")
-        {
-            rollers.extend(changes);
-            if set.is_empty() {
-                keys.remove("set");
-            }
-        }
-        keys.remove("catalogue");
-        keys.insert("rollers".into(), rollers.into());
-        found = true;
-    }
-    Ok(found.then(|| table.to_string()))
-}
-
-/// The text of a system with the whole scene of every bearing and the matrices of its shafts and housings in it; does gravity act?
-fn standing_alone(
-    text: &str,
-    bearings: &[MountedScene],
-    of_shafts: &[Option<Matrices>],
-    of_housings: &[Option<Matrices>],
-    weighs: bool,
-) -> String {
-    let Ok(mut table) = toml::from_str::<Table>(text) else {
-        return text.to_string();
-    };
-    let put = |into: Option<&mut Value>, matrices: Option<&Matrices>| {
-        let matrices = matrices.and_then(|matrices| Value::try_from(matrices).ok());
-        if let (Some(keys), Some(matrices)) = (into.and_then(Value::as_table_mut), matrices) {
-            keys.insert("matrices".into(), matrices);
-        }
-    };
-    let mut shafts: Vec<&mut Value> = match table.get_mut("shaft") {
-        Some(Value::Array(several)) => several.iter_mut().collect(),
-        one => one.into_iter().collect(),
-    };
-    for (keys, matrices) in shafts.iter_mut().zip(of_shafts) {
-        put(Some(keys), matrices.as_ref());
-    }
-    let housings = table.get_mut("housing").and_then(Value::as_array_mut).into_iter().flatten();
-    for (keys, matrices) in housings.zip(of_housings) {
-        put(Some(keys), matrices.as_ref());
-    }
-    write_bearings(&mut table, bearings, weighs);
-    table.to_string()
-}
-
-/// Puts the scenes of its bearings into the text of a system; `weighs` where the system has gravity.
-fn write_bearings(table: &mut Table, bearings: &[MountedScene], weighs: bool) {
-    let solver = table.contains_key("solver");
-    let written = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
-    let simulated = written
-        .filter_map(Value::as_table_mut)
-        .filter(|keys| !keys.contains_key("stiffness") && !keys.contains_key("rollers"));
-    for (keys, bearing) in simulated.zip(bearings) {
-        keys.remove("catalogue");
-        keys.remove("set");
-        let mut scene = toml::from_str::<Table>(&bearing.scene.source).unwrap_or_default();
-        // What the system says of all its bearings stands there alone: who changes it there changes it.
-        if solver {
-            scene.remove("solver");
-        }
-        if let (Some(effects), true) = (scene.get_mut("effects").and_then(Value::as_table_mut), weighs) {
-            effects.remove("gravity");
-        }
-        // The shaft that an outer ring is a part of has its speed.
-        if let (Some(load), Some(_)) =
-            (scene.get_mut("load").and_then(Value::as_table_mut), bearing.outer_shaft)
-        {
-            load.remove("outer_speed");
-        }
-        keys.insert("scene".into(), scene.into());
     }
 }

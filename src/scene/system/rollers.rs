@@ -2,8 +2,8 @@
 
 use nalgebra::Vector6;
 
-use crate::quasi_static::roller::Profile;
-use crate::quasi_static::rollers::{Geometry, Rollers, Taper};
+use crate::model::link::roller::Profile;
+use crate::model::link::rollers::{Geometry, Rollers, Taper};
 use crate::schema::numbers::Range;
 use crate::schema::{AxialTaken, Level, RollerProfile, RollersSection, SceneError};
 
@@ -16,8 +16,6 @@ const RADIUS: Range = Range::closed(1e-3, 1e6, "m");
 const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
 const FORCE: Range = Range::above(0.0, 1e9, "N");
 const DAMPING: Range = Range::closed(0.0, 1e15, "N s/m or N m s/rad");
-/// [-] most of the circle of their centres that rollers fill.
-const FULL: f64 = 1.0;
 
 /// Checks the keys of a roller bearing.
 ///
@@ -33,7 +31,8 @@ pub fn check(of: &RollersSection, level: Option<Level>) -> Result<(), SceneError
     COUNT.check(&key("count"), of.count as f64)?;
     let pitch = of.pitch_diameter.0;
     SIZE.check(&key("pitch_diameter"), pitch)?;
-    let room = pitch * (FULL * std::f64::consts::PI / of.count as f64).sin();
+    // Rollers touch each other.
+    let room = pitch * (std::f64::consts::PI / of.count as f64).sin();
     Range::closed(SIZE.low, room.min(0.5 * pitch), "m").check(&key("diameter"), of.diameter.0)?;
     SIZE.check(&key("length"), length)?;
     let numbers = [

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use super::ranges::POSITION;
 use crate::model::link::force_table::ForceTable;
+use crate::model::link::rollers::Rollers;
 use crate::model::link::spring_bearing::Spring;
-use crate::quasi_static::rollers::Rollers;
 use crate::schema::numbers::Range;
 use crate::schema::units::Quantity;
 use crate::schema::{AxialTaken, CouplingSection, SceneError, ShaftSection, Stiffness, StiffnessSection};

@@ -76,7 +76,8 @@ impl Scripted for System {
         match source {
             SimulationError::Backwards { .. }
             | SimulationError::LostInRounding { .. }
-            | SimulationError::Singular(_) => SystemError::Together(source),
+            | SimulationError::Singular(_)
+            | SimulationError::RollersOutOfBalance { .. } => SystemError::Together(source),
             source => {
                 let name = self.structures.scene.bearings[index].name.clone();
                 SystemError::Bearing { name, source }

@@ -17,9 +17,11 @@ use crate::dynamics::{Allowed, Boundary};
 use crate::effects::rating::Turning;
 use crate::equilibrium::MAX_APPROACH;
 use crate::forces::kinetic_energy_of;
+use crate::model::balance::may_be_left;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::energies::Powers;
+use crate::model::link::LinkState;
 use crate::model::state::{BodyState, State};
 use crate::model::structure::{Carrier, StructureState};
 use crate::quasi_static::bearing::{Balls, Rested};
@@ -88,10 +90,6 @@ fn damping(bearing: &Simulation) -> Option<Damping> {
     matrix.column_mut(3).fill(0.0);
     Some(Damping { matrix, load, rate })
 }
-
-/// [-] force that may be left on a ball over its loads, and \[N] that which is nothing in any bearing: searches end at 1e-12 of the loads,
-/// and a millionth of them is beyond what loads are printed with.
-const UNBALANCED: [f64; 2] = [1e-6, 1e-6];
 
 /// States of the elements where a run starts.
 pub fn started(
@@ -169,6 +167,23 @@ impl Structures {
     }
 }
 
+impl Structures {
+    /// Refuses rollers that are out of balance; what is not a number is no balance.
+    fn check_links(&self, time: f64) -> Result<(), SimulationError> {
+        let balanced = |state: &LinkState| state.unbalanced <= 1.0;
+        match self.link_states.iter().position(|state| !balanced(state)) {
+            Some(link) => Err(rollers_out_of_balance(&self.scene, link, time)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A link whose rollers are out of balance at a time \[s].
+pub fn rollers_out_of_balance(scene: &SystemScene, link: usize, time: f64) -> SimulationError {
+    let bearing = scene.link_names().nth(link).unwrap_or_default().to_owned();
+    SimulationError::RollersOutOfBalance { time, bearing }
+}
+
 impl Together<'_> {
     /// Takes the elements of bearings without states to where the structures are, after a step of `h` \[s].
     pub fn rest_elements(&mut self, boundaries: &[Boundary], h: f64) {
@@ -185,9 +200,10 @@ impl Together<'_> {
         structures.element_states = states;
     }
 
-    /// Refuses contacts of bearings without states which no material takes, or where no groove is.
+    /// Refuses contacts of bearings without states which no material takes, or where no groove is, and rollers out of balance.
     pub fn check_elements(&self) -> Result<(), Stopped> {
         let Some(structures) = &self.structures else { return Ok(()) };
+        structures.check_links(self.time()).map_err(|why| (0, why))?;
         for (joint, state) in structures.elements.iter().zip(&structures.element_states) {
             self.bearings[joint.bearing].check_rested(state).map_err(|why| (joint.bearing, why))?;
         }
@@ -280,9 +296,7 @@ impl Simulation {
         let most = deepest * deepest.sqrt();
         let [least_angle, most_angle] = bearing.contact_angles();
         // What is not a number is no balance.
-        let balanced = |ball: &Rested| {
-            ball.unbalanced <= UNBALANCED[1] + UNBALANCED[0] * (ball.loads[0] + ball.loads[1])
-        };
+        let balanced = |ball: &Rested| ball.unbalanced <= may_be_left(ball.loads);
         if let Some(index) = of.rested.iter().position(|ball| !balanced(ball)) {
             let unbalanced = of.rested[index].unbalanced;
             return Err(SimulationError::OutOfBalance { time, ball: index + 1, unbalanced });

@@ -14,7 +14,7 @@ use crate::analysis::condensed::Condensed;
 use crate::effects::rating::life_of_all;
 use crate::effects::reports::LifeOutput;
 use crate::model::bodies::Race;
-use crate::quasi_static::rollers::RollerOutputs;
+use crate::model::link::rollers::RollerOutputs;
 use crate::scene::system::SystemScene;
 use crate::simulation::outputs::Outputs;
 

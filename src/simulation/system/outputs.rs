@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use nalgebra::{DVector, Vector3};
 
 use super::{first_stations, housing_stations};
+use crate::model::link::rollers::RollerOutputs;
 use crate::model::link::{Law, Link, LinkState};
 use crate::model::structure::{Carrier, Map, Spin, StructureEnergies, StructurePowers, StructureState};
-use crate::quasi_static::rollers::RollerOutputs;
 use crate::scene::system::SystemScene;
 
 /// Motion of a point of a structure, in the shaft's axes.

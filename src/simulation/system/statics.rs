@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 use super::super::start::held_load;
 use super::super::{Simulation, SimulationError};
 use super::SystemError;
+use super::elements::rollers_out_of_balance;
 use crate::dynamics::carried::SeatMotion;
 use crate::dynamics::system::{Joint, StructureLoad, StructureTrial};
 use crate::model::bodies::Race;
@@ -348,13 +349,16 @@ impl Statics<'_> {
             stiffness += relative.tr_mul(&(whole * &relative));
             of_bearings.push(whole);
         }
-        for (link, flank) in self.links.iter().zip(&self.flanks) {
+        for (index, (link, flank)) in self.links.iter().zip(&self.flanks).enumerate() {
             let [displacement, rate] = link.motion(|structure| &states[structure]);
             // Dampers of teeth that turn in step do nothing; their friction knows which way they turn.
             let mut turning = Vector6::zeros();
             turning[3] = rate[3];
-            let LinkForce { force: on, by_displacement, .. } =
-                link.mean_force(&displacement, &turning, *flank);
+            let found = link.mean_force(&displacement, &turning, *flank);
+            if !found.is_balanced() {
+                return Err(SystemError::Together(rollers_out_of_balance(self.scene, index, self.time)));
+            }
+            let LinkForce { force: on, by_displacement, .. } = found;
             force = force.max(on.fixed_rows::<3>(0).amax());
             let relative = of_link(link, &first);
             residual += relative.tr_mul(&on);

@@ -13,10 +13,12 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
+use super::LinkForce;
 use super::roller::{Line, Profile, Rib, Roller, Settled};
 use crate::effects::rating::line_contact::{LAMINAE, Laminae, Ratings, place_of};
-use crate::model::link::LinkForce;
+use crate::model::balance::may_be_left;
 use crate::numerics::elementary::pow;
+use crate::numerics::size::larger;
 
 /// [kg/m3] density of bearing steel.
 const DENSITY: f64 = 7800.0;
@@ -147,8 +149,6 @@ pub struct RollerOutputs {
     pub equivalent_load: f64,
     /// [-] load that leaves a mark over the load at the largest pressure.
     pub static_safety: f64,
-    /// \[N] force that is left on a roller, the largest: 0 to rounding.
-    pub unbalanced: f64,
     /// Stiffness [N/m, N, N m]: force and moment against displacement and rotation of the shaft, in its axes.
     pub stiffness: Matrix6<f64>,
 }
@@ -269,6 +269,7 @@ impl Rollers {
             let mut column = on.by_rate.column_mut(3);
             column += by_ring.tr_mul(&settled.by_centrifugal) * by_rate;
             on.stored += settled.stored;
+            on.unbalanced = larger(on.unbalanced, settled.unbalanced / may_be_left([settled.loads[0] + settled.rib, settled.loads[1]]));
         }
         let [radial, axial, tilt] = self.damping;
         let damping = Vector6::new(axial, radial, radial, 0.0, tilt, tilt);
@@ -294,7 +295,6 @@ impl Rollers {
             of.largest_load = of.largest_load.max(load);
             of.largest_rib_load = of.largest_rib_load.max(settled.rib);
             of.loaded += usize::from(load > 0.0);
-            of.unbalanced = of.unbalanced.max(settled.unbalanced);
             for lamina in 0..LAMINAE {
                 let place = place_of(lamina, length);
                 let drop = profile.drop(place, diameter, length);

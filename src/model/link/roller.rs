@@ -15,7 +15,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::model::link::one_sided::OneSided;
+use super::one_sided::OneSided;
 use crate::numerics::elementary::{ln, pow};
 
 /// [-] power of the approach of a line contact, and that of its stiffness.
