@@ -101,3 +101,34 @@ fn invariant_derivatives_beside_bearings_without_states_are_differences() {
         }
     }
 }
+
+#[test]
+fn refusals_derivatives_that_are_no_numbers() {
+    let package = Package::of_system("asked-too-much", SHAFT);
+    let c = package.start();
+    run(c, 0..2);
+    // A force on the shaft is shared by both bearings: a tenth of it at least is this one's. Forty changes as large as numbers go are beyond them together.
+    let (unknown, known) = (package.reference("left.inner.force.z"), package.reference("mesh.force.z"));
+    let by = |changes: &[f64]| {
+        let (mut found, knowns) = ([0.0], vec![known; changes.len()]);
+        let status = unsafe {
+            fmi2GetDirectionalDerivative(
+                c,
+                &unknown,
+                1,
+                knowns.as_ptr(),
+                knowns.len(),
+                changes.as_ptr(),
+                found.as_mut_ptr(),
+            )
+        };
+        (status, found[0])
+    };
+    let (status, one) = by(&[1.0]);
+    assert!(status == Status::Ok && one.abs() > 0.1, "{one}");
+    assert_eq!(by(&[1e308; 40]).0, Status::Error);
+    // The instance is none the worse for it.
+    assert_eq!(by(&[1.0]), (Status::Ok, one));
+    run(c, 2..3);
+    unsafe { fmi2FreeInstance(c) };
+}

@@ -131,7 +131,7 @@ fn bearing(
         preload: if has_balls && is_angular { preload } else { 0.0 },
         offset: across(["misalignment_in_v_direction", "misalignment_in_w_direction"])?,
         misalignment: across(["angular_misalignment_around_v_axis", "angular_misalignment_around_w_axis"])?,
-        oil: if has_balls { oil(model)? } else { None },
+        clearance: if matches!(kind, Kind::Catalogue(_)) && !is_angular { clearance(of)? } else { None },
         kind,
         ..Bearing::default()
     })
@@ -263,14 +263,22 @@ fn own_geometry(model: &Model, of: &Component) -> Result<Option<String>, String>
     }
     match row.number("pressure_angle")?.filter(|angle| *angle > 0.0) {
         Some(angle) => bearing.insert("contact_angle".into(), Value::Float(angle)),
-        None => {
-            let clearance =
-                of.number("operating_radial_bearing_clearance")?.or(of.number("radial_bearing_clearance")?);
-            bearing.insert("diametral_clearance".into(), Value::Float(clearance.unwrap_or(0.0)))
-        }
+        None => bearing.insert("diametral_clearance".into(), Value::Float(clearance(of)?.unwrap_or(0.0))),
     };
     let scene = Table::from_iter([("bearing".to_owned(), Value::Table(bearing))]);
     Ok(Some(Value::Table(scene).to_string()))
+}
+
+/// \[m] play across the axis that the file has; 0 is none of its own.
+fn clearance(of: &Component) -> Result<Option<f64>, String> {
+    for key in
+        ["operating_radial_bearing_clearance", "mounted_radial_bearing_clearance", "radial_bearing_clearance"]
+    {
+        if let Some(number) = of.number(key)?.filter(|number| *number != 0.0) {
+            return Ok(Some(number));
+        }
+    }
+    Ok(None)
 }
 
 /// A stiffness of the file, with what is said of one that is rigid; 0 if the file has none.
@@ -320,13 +328,14 @@ fn one_way(takes: &str, way: f64) -> f64 {
     }
 }
 
-/// Oil of the casing, where the file has its viscosities and a temperature.
-fn oil(model: &Model) -> Result<Option<Oil>, String> {
+/// Oil of the casing, where the file has its viscosities and a temperature; in a load case (none: the file itself).
+pub fn oil(model: &Model, case: &[Component]) -> Result<Option<Oil>, String> {
     let Some(casing) = model.of_kind("gear_casing").next() else { return Ok(None) };
     let Some(lubricant) = model.referenced(casing.id, "lubricant") else { return Ok(None) };
     let at = |temperature: u32| lubricant.number(&format!("viscosity_at_{temperature}_degree_celsius"));
+    let now = case.iter().find(|of| of.id == casing.id).unwrap_or(casing);
     let (Some(cold), Some(warm), Some(temperature)) =
-        (at(40)?, at(100)?, casing.number("temperature_lubricant")?)
+        (at(40)?, at(100)?, now.number("temperature_lubricant")?.or(casing.number("temperature_lubricant")?))
     else {
         return Ok(None);
     };

@@ -1,11 +1,14 @@
 //! The load spectrum of a REXS model as the duty of a machine.
 
+use std::collections::BTreeSet;
+
+use super::bearings::oil;
 use super::frame::{Axes, Frame};
 use super::gearbox::{Duty, Gearbox};
 use super::model::{Component, Model};
 use super::power::{Drives, drives};
 use super::shafts::wrench;
-use super::text::{list, quantity};
+use super::text::{list, quantity, viscosity};
 
 /// The duty: of each load case its share, and the keys that differ from the machine's own.
 ///
@@ -19,6 +22,7 @@ pub fn duty(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Duty>, String> {
     let mut found = vec![];
+    not_read(model, notes);
     for (index, case) in model.cases.iter().enumerate() {
         let now = drives(model, case, &gearbox.shafts, &gearbox.meshes, &gearbox.couplings, notes)?;
         let mut set = vec![];
@@ -44,6 +48,12 @@ pub fn duty(
                 }
             }
         }
+        let oil = oil(model, case)?.filter(|oil| Some(*oil) != gearbox.oil);
+        for (oil, bearing) in oil.iter().flat_map(|oil| gearbox.bearings.iter().map(move |of| (oil, of))) {
+            if bearing.kind.has_balls() {
+                set.push((format!("bearing.{}.set.film.viscosity", bearing.name), viscosity(oil)));
+            }
+        }
         let share = share(case)?.unwrap_or_else(|| {
             notes.push(format!("load case {}: no part of the time is given: as long as others", index + 1));
             1.0
@@ -53,6 +63,36 @@ pub fn duty(
         }
     }
     Ok(found)
+}
+
+/// Attributes of load cases that are read, by the types of their components.
+const READ: &[(&str, &[&str])] = &[
+    ("gear_unit", &["load_duration_fraction", "operating_time_fraction", "operating_time"]),
+    ("gear_casing", &["temperature_lubricant"]),
+    ("shaft", &["rotational_speed"]),
+    (
+        "external_load",
+        &[
+            "torque_around_u_axis",
+            "torque_around_v_axis",
+            "torque_around_w_axis",
+            "force_u_direction",
+            "force_v_direction",
+            "force_w_direction",
+            "power",
+        ],
+    ),
+];
+
+/// Tells of what load cases change and a machine's duty does not.
+fn not_read(model: &Model, notes: &mut Vec<String>) {
+    let is_read = |kind: &str, attribute: &str| {
+        READ.iter().any(|(of, attributes)| *of == kind && attributes.contains(&attribute))
+    };
+    let all =
+        model.cases.iter().flatten().flat_map(|of| of.attributes.iter().map(move |own| (&of.kind, &own.id)));
+    let others: BTreeSet<_> = all.filter(|(kind, id)| !is_read(kind, id)).collect();
+    notes.extend(others.iter().map(|(kind, id)| format!("load cases: {id} of {kind} is not read")));
 }
 
 /// [-] part of the time of a load case.

@@ -7,6 +7,8 @@ pub struct Gearbox {
     pub title: String,
     /// [m/s2] acceleration of gravity.
     pub gravity: Option<[f64; 3]>,
+    /// Oil of its ball bearings, if the file has one.
+    pub oil: Option<Oil>,
     /// Its shafts.
     pub shafts: Vec<Shaft>,
     /// Its meshes.
@@ -181,8 +183,8 @@ pub struct Bearing {
     pub offset: [f64; 2],
     /// [rad] tilt of its bore about y and z.
     pub misalignment: [f64; 2],
-    /// Oil, if the file has one.
-    pub oil: Option<Oil>,
+    /// \[m] play across the axis, if the file has it and not the catalogue.
+    pub clearance: Option<f64>,
     /// What the comment beside it says.
     pub comment: String,
 }

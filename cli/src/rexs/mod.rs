@@ -4,6 +4,7 @@
 //! specification.
 
 mod bearings;
+mod document;
 mod duty;
 mod frame;
 mod gearbox;
@@ -115,16 +116,17 @@ pub fn export(path: &Path) -> Result<(String, Vec<String>), Box<dyn Error>> {
 /// The machine of a model.
 fn machine(model: &Model, notes: &mut Vec<String>) -> Result<Gearbox, String> {
     others(model, notes);
+    // The machine's own loads are those of the file; where it has them in its spectrum alone, those of the first case.
+    let own: &[Component] = if model.cases.is_empty() || has_drive(model) { &[] } else { &model.cases[0] };
     let mut names = Names::default();
     let (shafts, axes) = shafts::shafts(model, &mut names, notes)?;
     let mut gearbox = Gearbox { shafts, ..Gearbox::default() };
     gearbox.meshes = gears::meshes(model, &gearbox.shafts, &axes, &mut names, notes)?;
     (gearbox.bearings, gearbox.couplings) =
         bearings::bearings(model, &gearbox.shafts, &axes, &mut names, notes)?;
+    gearbox.oil = bearings::oil(model, own)?;
     gears::bodies(&gearbox.meshes, &mut gearbox.shafts);
     power::positions(model, &mut gearbox.shafts)?;
-    // The machine's own loads are those of the file; where it has them in its spectrum alone, those of the first case.
-    let own: &[Component] = if model.cases.is_empty() || has_drive(model) { &[] } else { &model.cases[0] };
     let drives = power::drives(model, own, &gearbox.shafts, &gearbox.meshes, &gearbox.couplings, notes)?;
     for (index, shaft) in gearbox.shafts.iter_mut().enumerate() {
         shaft.speed = drives.speeds[index];

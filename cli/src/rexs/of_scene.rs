@@ -1,5 +1,6 @@
 //! A machine's file as a gearbox: what of it a REXS file can hold.
 
+use std::collections::BTreeSet;
 use std::error::Error;
 use std::fmt::Display;
 use std::path::Path;
@@ -8,7 +9,7 @@ use roulement::scene::machine::MachineScene;
 use roulement::scene::system::SystemScene;
 use roulement::schema::schedule::Schedule;
 use roulement::schema::{AxialSeat, AxialTaken, MountingDirection, PointLoad, Stiffness, StiffnessSection};
-use toml::Table;
+use toml::{Table, Value};
 
 use super::gearbox::{
     Bearing, Coupling, Disc, Duty, Gear, Gearbox, Kind, Load, Material, Mesh, STEEL, Section, Shaft, Springs,
@@ -44,20 +45,97 @@ pub fn gearbox(path: &Path, notes: &mut Vec<String>) -> Result<(Gearbox, Vec<Gea
     Ok((own, cases))
 }
 
+/// Keys of a machine that are written, or say how it is simulated and not what it is; `*` is all below.
+#[rustfmt::skip]
+const WRITTEN: &[&str] = &[
+    "title",
+    "gravity",
+    "load.*",
+    "solver.*",
+    "ranges.*",
+    "duty.*",
+    "shaft.name",
+    "shaft.origin",
+    "shaft.speed",
+    "shaft.torque",
+    "shaft.drive_position",
+    "shaft.modes_up_to",
+    "shaft.material.*",
+    "shaft.section.*",
+    "shaft.disc.position",
+    "shaft.disc.mass",
+    "shaft.disc.polar_inertia",
+    "shaft.disc.transverse_inertia",
+    "shaft.load.name",
+    "shaft.load.position",
+    "shaft.load.force",
+    "shaft.load.moment",
+    "mesh.name",
+    "mesh.normal_module",
+    "mesh.pressure_angle",
+    "mesh.helix_angle",
+    "mesh.gears.*",
+    "bearing.name",
+    "bearing.shaft",
+    "bearing.catalogue",
+    "bearing.set.bearing.diametral_clearance",
+    "bearing.scene",
+    "bearing.scene.*",
+    "bearing.rollers.*",
+    "bearing.mounting.position",
+    "bearing.mounting.direction",
+    "bearing.mounting.outer_shaft",
+    "bearing.mounting.axial",
+    "bearing.mounting.misalignment.*",
+    "bearing.mounting.offset.*",
+    "bearing.mounting.preload.displacement",
+    "bearing.stiffness.radial",
+    "bearing.stiffness.axial",
+    "bearing.stiffness.axial_way",
+    "bearing.stiffness.tilt",
+    "coupling.name",
+    "coupling.shafts",
+    "coupling.position",
+    "coupling.stiffness.radial",
+    "coupling.stiffness.axial",
+    "coupling.stiffness.tilt",
+    "coupling.stiffness.torsion",
+];
+
+/// Tells of keys that are not written, each once.
+fn not_written(table: &Table, notes: &mut Vec<String>) {
+    let mut found = BTreeSet::new();
+    table.iter().for_each(|(name, value)| look(value, name, &mut found));
+    notes.extend(found.into_iter().map(|key| format!("not written: {key}")));
+}
+
+fn look(value: &Value, key: &str, found: &mut BTreeSet<String>) {
+    let is_written = |of: &str| of.strip_suffix('*').map_or(key == of, |section| key.starts_with(section));
+    if WRITTEN.iter().any(|of| is_written(of)) {
+        return;
+    }
+    match value {
+        Value::Table(table) => {
+            table.iter().for_each(|(name, value)| look(value, &format!("{key}.{name}"), found));
+        }
+        Value::Array(entries) if entries.iter().all(Value::is_table) => {
+            entries.iter().for_each(|entry| look(entry, key, found));
+        }
+        _ => {
+            found.insert(key.to_owned());
+        }
+    }
+}
+
 /// The gearbox of a scene at time 0, whose bearings have the designations of a table.
 fn of(scene: &SystemScene, table: &Table, notes: &mut Vec<String>) -> Result<Gearbox, String> {
     let mut found = Gearbox { title: scene.title.clone(), ..Gearbox::default() };
     let gravity = scene.gravity.at(0.0);
     found.gravity = (gravity.norm() > 0.0).then(|| gravity.into());
-    let lacks = [
-        (!scene.housings.is_empty(), "[[housing]]: bearings sit in the casing"),
-        (scene.frame.is_some(), "[frame]"),
-        (!scene.phases.is_empty(), "[[phase]]"),
-        (scene.schedules().any(Schedule::is_scripted), "what changes over time: values at time 0"),
-        (scene.gears().next().is_some(), "[[shaft.gear]]"),
-        (scene.rotating().next().is_some(), "[[shaft.rotating]]"),
-    ];
-    notes.extend(lacks.iter().filter(|(has, _)| *has).map(|(_, what)| format!("not written: {what}")));
+    not_written(table, notes);
+    if scene.schedules().any(Schedule::is_scripted) {
+        notes.push("not written: what changes over time; values at time 0 are".into());
+    }
     for section in &scene.shafts {
         if section.section.is_empty() {
             return Err(format!(
@@ -159,11 +237,20 @@ fn of(scene: &SystemScene, table: &Table, notes: &mut Vec<String>) -> Result<Gea
     Ok(found)
 }
 
-/// Designation of a bearing in the file's own text.
-fn designation(table: &Table, name: &str) -> Option<String> {
+/// A bearing in the file's own text.
+fn entry<'a>(table: &'a Table, name: &str) -> Option<&'a Value> {
     let entries = table.get("bearing")?.as_array()?;
-    let own = entries.iter().find(|of| of.get("name").and_then(|name| name.as_str()) == Some(name))?;
-    Some(own.get("catalogue")?.as_str()?.to_owned())
+    entries.iter().find(|of| of.get("name").and_then(Value::as_str) == Some(name))
+}
+
+/// Its designation there.
+fn designation(table: &Table, name: &str) -> Option<String> {
+    Some(entry(table, name)?.get("catalogue")?.as_str()?.to_owned())
+}
+
+/// Does the text give a clearance in place of the catalogue's?
+fn has_clearance(table: &Table, name: &str) -> bool {
+    entry(table, name).and_then(|of| of.get("set")?.get("bearing")?.get("diametral_clearance")).is_some()
 }
 
 fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut Vec<String>) {
@@ -184,13 +271,13 @@ fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut
                     ("contact_angle", bearing.contact_angle.map(|angle| angle.0)),
                     ("diametral_clearance", bearing.diametral_clearance.map(|clearance| clearance.0)),
                 ] {
-                    geometry.extend(number.map(|number| (key.to_owned(), toml::Value::Float(number))));
+                    geometry.extend(number.map(|number| (key.to_owned(), Value::Float(number))));
                 }
                 Kind::Scene(geometry.to_string())
             }
         };
-        if mounting.preload.force.is_some() {
-            notes.push(format!("not written: bearing \"{}\": preload by a force", of.name));
+        if matches!(kind, Kind::Scene(_)) {
+            notes.push(format!("not written: the scene of bearing \"{}\" but for its geometry", of.name));
         }
         found.bearings.push(Bearing {
             name: of.name.clone(),
@@ -200,6 +287,12 @@ fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut
             kind,
             held: mounting.axial == AxialSeat::Held,
             reversed: mounting.direction == MountingDirection::Against,
+            clearance: of
+                .scene
+                .bearing
+                .diametral_clearance
+                .map(|of| of.0)
+                .filter(|_| has_clearance(table, &of.name)),
             preload: mounting.preload.displacement.map_or(0.0, |way| way.0),
             offset: [offset.y, offset.z],
             misalignment: [misalignment.y, misalignment.z],
@@ -237,20 +330,14 @@ fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut
     }
 }
 
-/// Springs that are numbers; of tables and dampers it is told.
+/// Springs that are numbers; of tables it is told.
 fn springs(of: &StiffnessSection, name: &str, notes: &mut Vec<String>) -> Springs {
     let ways = [&of.radial, &of.axial].map(|given| given.as_ref().map(Stiffness::number));
     let turns = [&of.tilt, &of.torsion].map(|given| given.as_ref().map(Stiffness::number));
     let numbers = [ways[0], ways[1], turns[0], turns[1]];
-    let lacks = [
-        (numbers.contains(&Some(None)), "a stiffness by a table"),
-        (of.gap.is_some(), "gap"),
-        (of.radial_damping.is_some() || of.axial_damping.is_some(), "damping"),
-        (of.tilt_damping.is_some() || of.torsion_damping.is_some(), "damping of turns"),
-    ];
-    notes.extend(
-        lacks.iter().filter(|(has, _)| *has).map(|(_, what)| format!("not written: \"{name}\": {what}")),
-    );
+    if numbers.contains(&Some(None)) {
+        notes.push(format!("not written: \"{name}\": a stiffness by a table"));
+    }
     let [radial, axial, tilt, torsion] = numbers.map(|number| number.flatten().unwrap_or(0.0));
     let way = match of.axial_way {
         AxialTaken::Both => 0.0,

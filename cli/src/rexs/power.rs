@@ -1,5 +1,7 @@
 //! Speeds and torques of a REXS model: which shafts are driven, and what follows from the teeth.
 
+use std::f64::consts::PI;
+
 use super::gearbox::{Coupling, Mesh, Shaft};
 use super::model::{Component, Model};
 
@@ -88,6 +90,18 @@ pub fn drives(
                 let defines = component.text("defines_speed") != Some("false");
                 match speed {
                     None if defines => speed = Some((*shaft, given)),
+                    Some((first, of_first)) if defines && case.is_empty() => {
+                        let own =
+                            train.iter().find(|(shaft, _)| *shaft == first).map_or(1.0, |(_, turns)| *turns);
+                        let follows = of_first / own * turns;
+                        if (given - follows).abs() > BALANCED * follows.abs() {
+                            notes.push(format!(
+                                "{component}: its speed of {:.4} rpm is not the {:.4} rpm that follow from the teeth: the latter here",
+                                given * 30.0 / PI,
+                                follows * 30.0 / PI
+                            ));
+                        }
+                    }
                     _ => {}
                 }
             }

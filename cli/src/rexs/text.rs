@@ -197,12 +197,16 @@ fn springs(of: &Springs) -> String {
     format!("{{ {} }}", parts.join(", "))
 }
 
+/// Viscosity of an oil at its temperature.
+pub fn viscosity(of: &Oil) -> String {
+    format!("\"{} mPa s\"", digits((of.dynamic_viscosity() * 1e7).round() / 1e4))
+}
+
 /// Oil as it is at its temperature.
 fn oil(of: &Oil) -> String {
-    let viscosity = of.dynamic_viscosity() * 1e3;
     format!(
-        "{{ viscosity = \"{} mPa s\", density = \"{} kg/m^3\" }}    # {} and {} mm2/s at 40 and 100 degC, at {} degC",
-        digits((viscosity * 1e4).round() / 1e4),
+        "{{ viscosity = {}, density = \"{} kg/m^3\" }}    # {} and {} mm2/s at 40 and 100 degC, at {} degC",
+        viscosity(of),
         digits(of.density),
         digits(of.viscosity[0] * 1e6),
         digits(of.viscosity[1] * 1e6),
@@ -256,9 +260,15 @@ fn bearing(file: &mut File, of: &Bearing, gearbox: &Gearbox) {
         }
     }
     file.key("mounting", &format!("{{ {} }}", mounting.join(", ")));
-    if let Some(of) = &of.oil {
+    let found = gearbox.oil.as_ref().filter(|_| of.kind.has_balls());
+    if found.is_some() || of.clearance.is_some() {
         file.0 += "[bearing.set]\n";
-        file.key("film", &oil(of));
+    }
+    if let Some(clearance) = of.clearance {
+        file.key("bearing", &format!("{{ diametral_clearance = {} }}", quantity(clearance, "m")));
+    }
+    if let Some(found) = found {
+        file.key("film", &oil(found));
     }
 }
 

@@ -1,81 +1,20 @@
 //! A gearbox as a REXS file, version 1.4, in XML.
 
-use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, BytesText, Event};
 use toml::Table;
 
+use super::document::{Document, Part, text};
 use super::gearbox::{Bearing, Gearbox, Kind, Shaft, Springs};
-
-/// A component in a relation: role, type, number.
-type Role = (&'static str, &'static str, u64);
-
-/// What is written: relations by their types, components.
-struct Document {
-    relations: Vec<(&'static str, Vec<Role>)>,
-    components: Vec<Part>,
-}
-
-/// A component with its attributes: name, unit, values.
-struct Part {
-    id: u64,
-    kind: &'static str,
-    name: String,
-    attributes: Vec<(&'static str, &'static str, Vec<String>)>,
-}
-
-impl Part {
-    fn number(&mut self, name: &'static str, unit: &'static str, number: f64) {
-        self.attributes.push((name, unit, vec![in_unit(number, unit)]));
-    }
-
-    fn text(&mut self, name: &'static str, text: &str) {
-        self.attributes.push((name, "none", vec![text.into()]));
-    }
-
-    /// Its place, with axes along those of the gear unit.
-    fn place(&mut self, origin: [f64; 3]) {
-        let plain = |numbers: [f64; 3]| numbers.map(|number| in_unit(number, "mm")).to_vec();
-        self.attributes.push(("support_vector", "mm", plain(origin)));
-        self.attributes.push(("u_axis_vector", "mm", ["1", "0", "0"].map(String::from).to_vec()));
-        self.attributes.push(("w_axis_vector", "mm", ["0", "0", "1"].map(String::from).to_vec()));
-        self.text("reference_component_for_position", "1");
-    }
-}
-
-/// A number of SI in a unit of the file: the shortest text that reads back as the same number in that unit, to 15 digits.
-fn in_unit(number: f64, unit: &str) -> String {
-    let size = super::units::size(unit).unwrap_or(1.0);
-    let text = format!("{:.14e}", number / size);
-    text.parse::<f64>().map_or(text, |number| number.to_string())
-}
 
 /// Number of the gear unit, and of the casing.
 const UNIT: u64 = 1;
 const CASING: u64 = 2;
-
-impl Document {
-    fn add(&mut self, kind: &'static str, name: &str) -> &mut Part {
-        let id = self.components.len() as u64 + 1;
-        self.components.push(Part { id, kind, name: name.into(), attributes: vec![] });
-        let last = self.components.len() - 1;
-        &mut self.components[last]
-    }
-
-    fn relate(&mut self, kind: &'static str, roles: &[Role]) {
-        self.relations.push((kind, roles.to_vec()));
-    }
-
-    fn part_of(&mut self, assembly: (&'static str, u64), part: (&'static str, u64)) {
-        self.relate("assembly", &[("assembly", assembly.0, assembly.1), ("part", part.0, part.1)]);
-    }
-}
 
 /// Text of the file: a gearbox, and its duty with the gearbox in each load.
 ///
 /// # Errors
 /// If the text cannot be written.
 pub fn file(gearbox: &Gearbox, cases: &[Gearbox]) -> Result<String, Box<dyn std::error::Error>> {
-    let mut document = Document { relations: vec![], components: vec![] };
+    let mut document = Document::default();
     unit(&mut document, gearbox);
     let shafts: Vec<u64> = gearbox.shafts.iter().map(|of| shaft(&mut document, of)).collect();
     let loads: Vec<[Vec<u64>; 2]> = gearbox
@@ -311,6 +250,9 @@ fn bearing(document: &mut Document, of: &Bearing, gearbox: &Gearbox, shafts: &[u
         }
         Kind::Catalogue(name) => {
             part.text("catalogue_designation", name);
+            if let Some(clearance) = of.clearance {
+                part.number("radial_bearing_clearance", "mum", clearance);
+            }
             let digits: String = name.chars().filter(char::is_ascii_digit).collect();
             ball_bearing(part, of, digits.starts_with('7'));
         }
@@ -358,110 +300,24 @@ fn ball_bearing(part: &mut Part, of: &Bearing, is_angular: bool) {
 
 /// Components of a load case.
 fn load_case(share: f64, case: &Gearbox, shafts: &[u64], loads: &[[Vec<u64>; 2]]) -> Vec<Part> {
-    let part = |id: u64, kind: &'static str| Part { id, kind, name: String::new(), attributes: vec![] };
-    let mut found = vec![part(UNIT, "gear_unit")];
+    let mut found = vec![Part::of_case(UNIT, "gear_unit")];
     found[0].number("load_duration_fraction", "%", share);
     for ((shaft, id), [drives, forces]) in case.shafts.iter().zip(shafts).zip(loads) {
         if let Some(speed) = shaft.speed {
-            let mut of = part(*id, "shaft");
+            let mut of = Part::of_case(*id, "shaft");
             of.number("rotational_speed", "1 / min", speed);
             found.push(of);
         }
         for (torque, id) in shaft.torque.iter().zip(drives) {
-            let mut of = part(*id, "external_load");
+            let mut of = Part::of_case(*id, "external_load");
             of.number("torque_around_u_axis", "N m", *torque);
             found.push(of);
         }
         for (load, id) in shaft.loads.iter().zip(forces) {
-            let mut of = part(*id, "external_load");
+            let mut of = Part::of_case(*id, "external_load");
             wrench(&mut of, load.force, load.moment);
             found.push(of);
         }
     }
     found
-}
-
-fn text(document: &Document, cases: &[Vec<Part>]) -> Result<String, Box<dyn std::error::Error>> {
-    let mut writer = Writer::new_with_indent(vec![], b' ', 2);
-    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    writer
-        .create_element("model")
-        .with_attributes([
-            ("applicationId", "roulement"),
-            ("applicationVersion", env!("CARGO_PKG_VERSION")),
-            ("version", "1.4"),
-        ])
-        .write_inner_content(|writer| {
-            writer.create_element("relations").write_inner_content(|writer| {
-                for (index, (kind, roles)) in document.relations.iter().enumerate() {
-                    writer
-                        .create_element("relation")
-                        .with_attributes([("id", (index + 1).to_string().as_str()), ("type", kind)])
-                        .write_inner_content(|writer| {
-                            for (role, hint, id) in roles {
-                                writer
-                                    .create_element("ref")
-                                    .with_attributes([
-                                        ("hint", *hint),
-                                        ("id", id.to_string().as_str()),
-                                        ("role", role),
-                                    ])
-                                    .write_empty()?;
-                            }
-                            Ok(())
-                        })?;
-                }
-                Ok(())
-            })?;
-            writer
-                .create_element("components")
-                .write_inner_content(|writer| parts(writer, &document.components))?;
-            if !cases.is_empty() {
-                writer.create_element("load_spectrum").with_attribute(("id", "1")).write_inner_content(
-                    |writer| {
-                        for (index, case) in cases.iter().enumerate() {
-                            writer
-                                .create_element("load_case")
-                                .with_attribute(("id", (index + 1).to_string().as_str()))
-                                .write_inner_content(|writer| parts(writer, case))?;
-                        }
-                        Ok(())
-                    },
-                )?;
-            }
-            Ok(())
-        })?;
-    Ok(String::from_utf8(writer.into_inner())? + "\n")
-}
-
-fn parts(writer: &mut Writer<Vec<u8>>, parts: &[Part]) -> std::io::Result<()> {
-    for part in parts {
-        writer
-            .create_element("component")
-            .with_attributes([
-                ("id", part.id.to_string().as_str()),
-                ("name", &part.name),
-                ("type", part.kind),
-            ])
-            .write_inner_content(|writer| {
-                for (name, unit, values) in &part.attributes {
-                    let element =
-                        writer.create_element("attribute").with_attributes([("id", *name), ("unit", *unit)]);
-                    match values.as_slice() {
-                        [value] => element.write_text_content(BytesText::new(value))?,
-                        several => element.write_inner_content(|writer| {
-                            writer.create_element("array").write_inner_content(|writer| {
-                                for value in several {
-                                    writer.create_element("c").write_text_content(BytesText::new(value))?;
-                                }
-                                Ok(())
-                            })?;
-                            Ok(())
-                        })?,
-                    };
-                }
-                Ok(())
-            })?;
-    }
-    Ok(())
 }

@@ -269,7 +269,10 @@ impl Rollers {
             let mut column = on.by_rate.column_mut(3);
             column += by_ring.tr_mul(&settled.by_centrifugal) * by_rate;
             on.stored += settled.stored;
-            on.unbalanced = larger(on.unbalanced, settled.unbalanced / may_be_left([settled.loads[0] + settled.rib, settled.loads[1]]));
+            on.unbalanced = larger(
+                on.unbalanced,
+                settled.unbalanced / may_be_left([settled.loads[0] + settled.rib, settled.loads[1]]),
+            );
         }
         let [radial, axial, tilt] = self.damping;
         let damping = Vector6::new(axial, radial, radial, 0.0, tilt, tilt);
