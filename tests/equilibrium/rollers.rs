@@ -404,6 +404,27 @@ fn hard_loads_through_the_gap_reversed_ribs_and_large_tilts_stay_in_balance() {
 }
 
 #[test]
+fn hard_wherever_rings_are_and_however_slow_rollers_go_all_searches_end() {
+    let mut state = 1u64;
+    let mut any = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for bearing in [locating(), tapered(1.0)].map(|of| Rollers::new(of, None)) {
+        // From rollers that weigh a hundredth of their weight outwards to those that are pressed by 300 N.
+        for speed in [0.0, 1.0, 10.0, 100.0, 3000.0] {
+            for _ in 0..100 {
+                let d = displaced(
+                    [any() - 0.3, any() - 0.5, any() - 0.5, 0.1 * any(), 0.1 * any()].map(|of| 100.0 * of),
+                );
+                let of = bearing.force(&d, &turning(speed));
+                assert!(of.unbalanced < 1e-2, "{speed} {d}: {}", of.unbalanced);
+            }
+        }
+    }
+}
+
+#[test]
 fn hard_a_search_that_does_not_end_is_no_balance() {
     let bearing = Rollers::new(locating(), None);
     assert!(bearing.force(&displaced([10.0, 40.0, 0.0, 1.0, 0.0]), &turning(300.0)).is_balanced());

@@ -107,7 +107,7 @@ fn refusals_derivatives_that_are_no_numbers() {
     let package = Package::of_system("asked-too-much", SHAFT);
     let c = package.start();
     run(c, 0..2);
-    // A force on the shaft is shared by both bearings: a tenth of it at least is this one's. Forty changes as large as numbers go are beyond them together.
+    // Within a step inertia takes most of a force, a bearing a hundredth of it. A thousand changes as large as numbers go are beyond them together.
     let (unknown, known) = (package.reference("left.inner.force.z"), package.reference("mesh.force.z"));
     let by = |changes: &[f64]| {
         let (mut found, knowns) = ([0.0], vec![known; changes.len()]);
@@ -125,8 +125,8 @@ fn refusals_derivatives_that_are_no_numbers() {
         (status, found[0])
     };
     let (status, one) = by(&[1.0]);
-    assert!(status == Status::Ok && one.abs() > 0.1, "{one}");
-    assert_eq!(by(&[1e308; 40]).0, Status::Error);
+    assert!(status == Status::Ok && one.abs() > 0.01, "{one}");
+    assert_eq!(by(&[1e308; 1000]).0, Status::Error);
     // The instance is none the worse for it.
     assert_eq!(by(&[1.0]), (Status::Ok, one));
     run(c, 2..3);

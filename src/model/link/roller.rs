@@ -32,8 +32,10 @@ const MAX_ITERATIONS: u32 = 100;
 const FEW: f64 = 0.2;
 /// \[m] longest step of a roller.
 const LONGEST_STEP: f64 = 1e-5;
-/// Halvings of a step of Newton's method.
-const MAX_HALVINGS: u32 = 30;
+/// Trials along a step of Newton's method.
+const MAX_TRIALS: u32 = 30;
+/// [-] a trial this near to where the next contact comes in says nothing about that contact.
+const NEAR: f64 = 0.9;
 /// [-] unbalanced force over the loads at work that is rounding.
 const TOLERANCE: f64 = 1e-12;
 /// [-] part of the expected fall of the potential that is enough, and part of the potential that is its rounding.
@@ -263,19 +265,32 @@ impl Roller {
             let step = whole * (LONGEST_STEP / far.max(LONGEST_STEP));
             let mut part = 1.0;
             let mut moved = None;
-            for _ in 0..MAX_HALVINGS {
+            let free = self.free_part(&place, p, &step);
+            let down = r.dot(&step);
+            let left = down * (1.0 - free * step.norm() / whole.norm());
+            let mut soft = true;
+            for _ in 0..MAX_TRIALS {
                 let trial = place + step * part;
                 let there = self.at(&trial, p);
                 let next = residual(&there);
                 let change = there.elastic - here.elastic - outside.dot(&step) * part;
                 // Where the potential changes by its rounding, the force says more.
                 let rounded = change.abs() <= ROUNDED * (here.elastic + centrifugal * ways);
-                let falls = change < -ENOUGH * part * r.dot(&step);
+                let falls = change < -ENOUGH * part * down;
                 if falls || rounded && sized(&next).norm_squared() < sized(&r).norm_squared() {
                     moved = Some((trial, there, next));
                     break;
                 }
-                part *= 0.5;
+                let up = -next.dot(&step);
+                part = if free < NEAR * part && left > 0.0 && up > 0.0 {
+                    // What comes in there turns the slope round, softly or at once: both are tried in turn.
+                    let share = left / (left + up);
+                    let share = if soft { share.sqrt() } else { share };
+                    soft = !soft;
+                    free + (part - free) * share.min(0.5)
+                } else {
+                    0.5 * part
+                };
             }
             // No descent is left to find: rounding.
             let Some(next) = moved else { break };
@@ -318,6 +333,28 @@ impl Roller {
         let first = touches.fold(f64::INFINITY, f64::min);
         rest.y = (first + pow(centrifugal / (FEW * outer.stiffness), 1.0 / POWER)) / outer.normal.y;
         rest
+    }
+
+    /// [-] part of a step on which nothing touches that did not before: so far its fall is the expected one.
+    fn free_part(&self, q: &Vector3<f64>, p: &Vector3<f64>, step: &Vector3<f64>) -> f64 {
+        let moved = [q - p, *q];
+        let mut free: f64 = 1.0;
+        let mut comes_in = |gap: f64, way: f64| {
+            if gap > 0.0 && gap < free * way {
+                free = gap / way;
+            }
+        };
+        for (race, line) in self.lines.iter().enumerate() {
+            let (gap, way) = (line.gap - line.normal.dot(&moved[race]), line.normal.dot(step));
+            for Station { place, drop, .. } in &self.stations {
+                let lever = line.side * place;
+                comes_in(gap + drop - lever * moved[race].z, way + lever * step.z);
+            }
+        }
+        for rib in &self.ribs {
+            comes_in(rib.gap - rib.normal.dot(&moved[rib.race]), rib.normal.dot(step));
+        }
+        free
     }
 
     /// [N/m] largest stiffness of all motions, tilts by the way of the ends.
