@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
@@ -72,9 +73,18 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
+/// Copies a folder.
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        if from.is_dir() { copy(&from, &to) } else { drop(fs::copy(from, to).unwrap()) }
+    }
+}
+
 /// A folder with what commands of the documents work on.
-fn workplace(name: &str) -> Scratch {
-    let scratch = Scratch::new(name);
+fn workplace() -> Scratch {
+    let scratch = Scratch::new("documents");
     let write = |name: &str, text: &str| {
         let path = scratch.path(name);
         fs::create_dir_all(Path::new(&path).parent().unwrap()).unwrap();
@@ -130,18 +140,23 @@ fn workplace(name: &str) -> Scratch {
 #[test]
 fn every_command_of_the_documents_runs() {
     let program = Path::new(env!("CARGO_BIN_EXE_roulement"));
+    let is_command = |words: &Vec<String>| {
+        words.first().is_some_and(|first| ["roulement", "target/release/roulement"].contains(&first.as_str()))
+    };
+    let place = workplace();
     let mut ran = 0;
     for (document, text) in documents() {
-        let scratch = workplace(&format!("documents-{document}"));
-        for line in blocks(&text, "sh").into_iter().flat_map(str::lines) {
-            let words = words(line);
-            let Some((first, arguments)) = words.split_first() else { continue };
-            if !["roulement", "target/release/roulement"].contains(&first.as_str()) {
-                continue;
+        let scratch = Scratch::new(&format!("documents-{document}"));
+        let lines = blocks(&text, "sh").into_iter().flat_map(str::lines);
+        for (line, words) in lines.map(|line| (line, words(line))).filter(|(_, words)| is_command(words)) {
+            let arguments = &words[1..];
+            if !Path::new(&scratch.path("scenes")).exists() {
+                copy(Path::new(&place.path("")), Path::new(&scratch.path("")));
             }
             let added = LONG
                 .iter()
                 .filter(|(marks, _)| marks.iter().all(|mark| arguments.iter().any(|word| word == mark)));
+            let begun = Instant::now();
             let output = Command::new(program)
                 .args(arguments)
                 .args(added.flat_map(|(_, more)| *more))
@@ -151,6 +166,7 @@ fn every_command_of_the_documents_runs() {
                 .unwrap();
             let error = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{document}: {line}\n{error}");
+            println!("{:5.1} s  {document}: {line}", begun.elapsed().as_secs_f64());
             ran += 1;
         }
     }
@@ -187,6 +203,7 @@ fn merge(into: &mut Table, from: Table) {
 #[test]
 fn every_part_of_a_scene_in_the_documents_is_read() {
     let thrust = fs::read_to_string(common::scene("thrust")).unwrap();
+    let place = workplace();
     let mut read = 0;
     let scratch = Scratch::new("documents-scenes");
     let measured = root().join("scenes/effects/measured_shock.csv");
@@ -201,7 +218,7 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
             for part in parts {
                 let table: Table = part.parse().unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                 if ["grid", "case", "latin_hypercube"].iter().any(|key| table.contains_key(*key)) {
-                    sweep(&document, part);
+                    sweep(&place, &document, part);
                     read += 1;
                     continue;
                 }
@@ -276,8 +293,9 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
 }
 
 /// A sweep of a few short cases of a document.
-fn sweep(document: &str, cases: &str) {
-    let scratch = workplace(&format!("documents-sweep-{document}"));
+fn sweep(place: &Scratch, document: &str, cases: &str) {
+    let scratch = Scratch::new(&format!("documents-sweep-{document}"));
+    copy(Path::new(&place.path("")), Path::new(&scratch.path("")));
     let few = cases.replace("cases = 50", "cases = 2").replace("\"20 ms\"", "\"1 ms\"");
     fs::write(scratch.path("cases.toml"), few).unwrap();
     let output = common::roulement(&["sweep", &scratch.path("cases.toml"), "-o", &scratch.path("out")]);
