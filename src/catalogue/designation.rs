@@ -19,7 +19,7 @@ pub(super) struct Named {
 }
 
 /// Makers, whose names stand before designations.
-const MAKERS: [&str; 24] = [
+pub(super) const MAKERS: [&str; 24] = [
     "SKF",
     "FAG",
     "INA",
@@ -116,10 +116,12 @@ const KINDS: [(&str, &[&str]); 4] = [
     ("a four-point contact ball bearing", &["QJ", "Q"]),
 ];
 
+const TAPERED: &str = "a tapered roller bearing";
+
 /// Other kinds of bearings by how many digits their numbers have, and what these begin with.
 #[rustfmt::skip]
 const SERIES: [(&str, usize, &[&str]); 10] = [
-    ("a tapered roller bearing", 5, &["302", "303", "313", "320", "322", "323", "329", "330", "331", "332"]),
+    (TAPERED, 5, &["302", "303", "313", "320", "322", "323", "329", "330", "331", "332"]),
     ("a spherical roller bearing", 5, &["213", "222", "223", "230", "231", "232", "238", "239", "240", "241"]),
     ("a thrust ball bearing", 5, &["510", "511", "512", "513", "514", "522", "523", "524", "532", "533", "534"]),
     ("a thrust cylindrical roller bearing", 5, &["811", "812", "893", "894"]),
@@ -239,6 +241,22 @@ pub(super) fn rollers(name: &str) -> Option<(String, String, Clearance)> {
     ["N", "NU", "NJ", "NUP"]
         .contains(&prefix.as_str())
         .then(|| (prefix, head.number, class.unwrap_or_default()))
+}
+
+/// Series and code of the bore of a tapered roller bearing; nothing within where what follows them changes its contact angle. None where a name is of something else.
+pub(super) fn tapered(name: &str) -> Option<Option<String>> {
+    let upper = name.to_ascii_uppercase();
+    let mut words = upper
+        .split([' ', '-', '_', ',', '.', '+', '/'])
+        .filter(|word| !word.is_empty() && !MAKERS.contains(word));
+    let Head { prefix, number, rest } = words.find_map(Head::of)?;
+    // NSK has HR before all of them, SNR and NTN have E and 4T.
+    let is_tapered = ["", "HR", "E", "T"].contains(&prefix.as_str())
+        && SERIES.iter().any(|(kind, digits, series)| {
+            *kind == TAPERED && number.len() == *digits && series.iter().any(|of| number.starts_with(of))
+        });
+    let steeper = rest.starts_with(['B', 'C', 'D']) || words.next().is_some_and(|next| next.starts_with('B'));
+    is_tapered.then(|| (!steeper).then_some(number))
 }
 
 /// Looks a designation up.

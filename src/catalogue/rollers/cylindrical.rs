@@ -6,9 +6,9 @@
 
 use std::f64::consts::PI;
 
-use super::designation::rollers;
-use super::table::table;
-use super::{CatalogueError, Clearance};
+use crate::catalogue::Clearance;
+use crate::catalogue::designation::rollers;
+use crate::catalogue::table::table;
 
 /// [-] part of the circle of their centres that rollers fill at most, with a cage.
 const FILL: f64 = 0.84;
@@ -67,17 +67,13 @@ const CLEARANCES: [(f64, [[f64; 2]; 5]); 7] = [
     (100.0, [[15.0, 50.0], [50.0, 85.0], [75.0, 110.0], [105.0, 140.0], [155.0, 190.0]]),
 ];
 
-/// Keys of `[bearing.rollers]` of a designation, as a text; none where it is no cylindrical roller bearing of one row.
+/// Its keys; none where the designation is of something else.
 ///
 /// # Errors
-/// If its size is not known.
-pub fn rollers_of(designation: &str) -> Option<Result<String, CatalogueError>> {
+/// What it is, if its size is not known.
+pub(super) fn find(designation: &str) -> Option<Result<String, &'static str>> {
     let (kind, number, class) = rollers(designation)?;
-    let unknown = || CatalogueError::Kind {
-        name: designation.into(),
-        kind: "a cylindrical roller bearing of a size that is not known",
-    };
-    Some(keys(&kind, &number, class).ok_or_else(unknown))
+    Some(keys(&kind, &number, class).ok_or("a cylindrical roller bearing of a size that is not known"))
 }
 
 fn keys(kind: &str, number: &str, class: Clearance) -> Option<String> {
