@@ -210,6 +210,22 @@ fn closed_form_a_pair_of_tapered_bearings_has_the_preload_of_its_clearance_and_s
 }
 
 #[test]
+fn invariant_a_tapered_bearing_by_its_designation_is_that_of_its_keys() {
+    let by_keys = tapered_pair("-8 um", "[\"600 N\", \"2 kN\", 0]");
+    let written = by_keys.split("rollers = {").nth(1).unwrap().split('}').next().unwrap();
+    let keys: toml::Table = roulement::catalogue::rollers_of("30206").unwrap().unwrap().parse().unwrap();
+    let inline: Vec<String> = keys.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+    let own = by_keys.replace(written, &format!(" {}, axial_clearance = \"-8 um\" ", inline.join(", ")));
+    let named = by_keys.replace(
+        &format!("rollers = {{{written}}}"),
+        "catalogue = \"SKF 30206 J2/Q\"\nset = { rollers = { axial_clearance = \"-8 um\" } }",
+    );
+    let [own, named] = [own, named]
+        .map(|text| system(&text).outputs().links.iter().map(|link| link.state.force).collect::<Vec<_>>());
+    assert!(own == named && own[0][1].hypot(own[1][1]) > 1000.0, "{own:?} {named:?}");
+}
+
+#[test]
 fn invariant_the_equilibrium_reports_rollers_with_their_life() {
     let found = MachineEquilibrium::of(&scene(NON_LOCATING), 0.0, 100.0).unwrap();
     let value = found.to_json();

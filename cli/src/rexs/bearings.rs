@@ -118,8 +118,15 @@ fn bearing(
         notes
             .push(format!("{of}: it takes axial force one way in the file; its ring is held both ways here"));
     }
+    let is_tapered = kind.is_tapered();
     if matches!(kind, Kind::Rollers(_)) && takes == Some("no_direction") {
-        notes.push(format!("{of}: it takes no axial force in the file; its ribs, if it has some, do here"));
+        let what = if is_tapered { "its rollers do here" } else { "its ribs, if it has some, do here" };
+        notes.push(format!("{of}: it takes no axial force in the file; {what}"));
+    }
+    if is_tapered && one_way == 0.0 && takes != Some("no_direction") {
+        notes.push(format!(
+            "{of}: the file does not say which axial force it takes; here those of the shaft along +x"
+        ));
     }
     let preload = of.number("preload_distance")?.unwrap_or(0.0);
     let name = names.of(of, "bearing");
@@ -127,8 +134,8 @@ fn bearing(
         comment: comment(of, &name),
         name,
         held: takes != Some("no_direction"),
-        reversed: has_balls && is_angular && one_way < 0.0,
-        preload: if has_balls && is_angular { preload } else { 0.0 },
+        reversed: (has_balls && is_angular || is_tapered) && one_way < 0.0,
+        preload: if has_balls && is_angular || is_tapered { preload } else { 0.0 },
         offset: across(["misalignment_in_v_direction", "misalignment_in_w_direction"])?,
         misalignment: across(["angular_misalignment_around_v_axis", "angular_misalignment_around_w_axis"])?,
         clearance: if matches!(kind, Kind::Catalogue(_)) && !is_angular { clearance(of)? } else { None },
@@ -167,7 +174,15 @@ fn kind(
     notes: &mut Vec<String>,
 ) -> Result<Kind, String> {
     if of.kind == "concept_bearing" {
-        return by_stiffness(of, way, "a bearing without a type", notes);
+        let has_none = of.number("radial_stiffness")?.is_none_or(|number| number == 0.0);
+        let Some(named) = named_in(&of.name).filter(|_| has_none && !between_shafts) else {
+            return by_stiffness(of, way, "a bearing without a type", notes);
+        };
+        notes.push(format!(
+            "{of}: it has neither a type nor a stiffness across the axis: simulated as the {} of its name",
+            named.name()
+        ));
+        return Ok(named);
     }
     let rows = of.number("number_of_bearing_rows")?.unwrap_or(1.0);
     let type_ = of.text("bearing_type").unwrap_or_default();
@@ -203,6 +218,19 @@ fn kind(
             by_stiffness(of, way, "neither in the catalogue, nor with dimensions and load ratings", notes)
         }
     }
+}
+
+/// The bearing of the catalogue whose designation is a part of a name, of one or two words.
+fn named_in(name: &str) -> Option<Kind> {
+    let words: Vec<&str> =
+        name.split([' ', ':', '(', ')', '[', ']']).filter(|word| !word.is_empty()).collect();
+    let pairs = words.windows(2).map(|pair| pair.join(" "));
+    words.iter().map(ToString::to_string).chain(pairs).find_map(|name| {
+        if matches!(rollers_of(&name), Some(Ok(_))) {
+            return Some(Kind::Rollers(name));
+        }
+        scene_of(&name).is_ok().then_some(Kind::Catalogue(name))
+    })
 }
 
 /// Scene of a bearing by its dimensions and load ratings, in one line.

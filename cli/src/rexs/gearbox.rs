@@ -1,5 +1,7 @@
 //! A gearbox as a machine's file can have it, in SI and with x along all shafts.
 
+use roulement::catalogue::rollers_of;
+
 /// A gearbox.
 #[derive(Debug, Default)]
 pub struct Gearbox {
@@ -209,6 +211,19 @@ impl Default for Kind {
 }
 
 impl Kind {
+    /// Its designation; none of what has none.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Catalogue(name) | Self::Rollers(name) => name,
+            Self::Scene(_) | Self::Springs(_) => "",
+        }
+    }
+
+    /// Is it a tapered roller bearing, which takes axial forces one way?
+    pub fn is_tapered(&self) -> bool {
+        matches!(self, Self::Rollers(name) if matches!(rollers_of(name), Some(Ok(keys)) if keys.contains("contact_angle")))
+    }
+
     /// Is it a ball bearing, whose seat may slide and which has oil?
     pub fn has_balls(&self) -> bool {
         matches!(self, Self::Catalogue(_) | Self::Scene(_))

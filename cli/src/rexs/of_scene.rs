@@ -248,6 +248,12 @@ fn designation(table: &Table, name: &str) -> Option<String> {
     Some(entry(table, name)?.get("catalogue")?.as_str()?.to_owned())
 }
 
+/// Does its x axis point along that of the shaft backwards?
+fn is_reversed(table: &Table, name: &str) -> bool {
+    let direction = entry(table, name).and_then(|of| of.get("mounting")?.get("direction")?.as_str());
+    direction == Some("-x")
+}
+
 /// Does the text give a clearance in place of the catalogue's?
 fn has_clearance(table: &Table, name: &str) -> bool {
     entry(table, name).and_then(|of| of.get("set")?.get("bearing")?.get("diametral_clearance")).is_some()
@@ -322,6 +328,7 @@ fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut
                 position: of.position,
                 kind,
                 held: true,
+                reversed: is_reversed(table, &of.name),
                 offset: [of.bore.0.y, of.bore.0.z],
                 misalignment: [of.bore.1.y, of.bore.1.z],
                 ..Bearing::default()

@@ -246,7 +246,8 @@ fn bearing(file: &mut File, of: &Bearing, gearbox: &Gearbox) {
     if of.kind.has_balls() && !of.held && of.outer_shaft.is_none() {
         mounting.push("axial = \"free\"".into());
     }
-    if of.preload != 0.0 {
+    let is_tapered = of.kind.is_tapered();
+    if of.preload != 0.0 && !is_tapered {
         mounting.push(format!("preload = {{ displacement = {} }}", quantity(of.preload, "m")));
     }
     if of.outer_shaft.is_none() {
@@ -261,8 +262,12 @@ fn bearing(file: &mut File, of: &Bearing, gearbox: &Gearbox) {
     }
     file.key("mounting", &format!("{{ {} }}", mounting.join(", ")));
     let found = gearbox.oil.as_ref().filter(|_| of.kind.has_balls());
-    if found.is_some() || of.clearance.is_some() {
+    let pressed = Some(of.preload).filter(|way| is_tapered && *way != 0.0);
+    if found.is_some() || of.clearance.is_some() || pressed.is_some() {
         file.0 += "[bearing.set]\n";
+    }
+    if let Some(way) = pressed {
+        file.key("rollers", &format!("{{ axial_clearance = {} }}", quantity(-way, "m")));
     }
     if let Some(clearance) = of.clearance {
         file.key("bearing", &format!("{{ diametral_clearance = {} }}", quantity(clearance, "m")));

@@ -242,11 +242,17 @@ fn bearing(document: &mut Document, of: &Bearing, gearbox: &Gearbox, shafts: &[u
     ] {
         part.number(name, unit, number);
     }
+    let is_tapered = of.kind.is_tapered();
     match &of.kind {
         Kind::Springs(of) => springs(part, of),
         Kind::Rollers(name) => {
             part.text("catalogue_designation", name);
-            part.text("bearing_type", "radial_roller_bearing");
+            if is_tapered {
+                part.text("bearing_type", "radial_tapered_roller_bearing");
+                part.text("axial_force_absorption", if of.reversed { "negative" } else { "positive" });
+            } else {
+                part.text("bearing_type", "radial_roller_bearing");
+            }
         }
         Kind::Catalogue(name) => {
             part.text("catalogue_designation", name);

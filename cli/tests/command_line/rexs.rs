@@ -10,6 +10,8 @@ const OLD: &str = include_str!("../data/rexs/two_shafts_1.0.rexs");
 const NEW: &str = include_str!("../../../examples/gearbox/two_shafts.rexsj");
 
 /// The machine of a file's text, and what is told of it.
+const BEARINGS: [&str; 2] = ["bearings", "bearings_by_stiffness"];
+
 fn imported(scratch: &Scratch, name: &str, bytes: &[u8]) -> (String, String) {
     std::fs::write(scratch.path(name), bytes).unwrap();
     let output = roulement(&["import", &scratch.path(name)]);
@@ -33,24 +35,22 @@ fn equilibrium(scratch: &Scratch, machine: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// \[N] force on the shaft of a bearing.
+/// \[N] force on the shaft of a bearing: of one of balls, or one by its stiffness or by rollers.
 fn force(equilibrium: &Value, name: &str) -> [f64; 3] {
-    ["x", "y", "z"].map(|axis| {
-        equilibrium["bearings"][name]["force"][axis]
-            .as_f64()
-            .unwrap_or_else(|| panic!("{name}: {equilibrium}"))
-    })
+    let of = BEARINGS.iter().find_map(|kind| equilibrium[kind].get(name));
+    let of = of.unwrap_or_else(|| panic!("{name}: {equilibrium}"));
+    ["x", "y", "z"].map(|axis| of["force"][axis].as_f64().unwrap())
 }
 
 /// Forces on all shafts of two machines are the same; how many bearings there are.
 fn same_forces(own: &Value, other: &Value) -> usize {
-    let bearings = own["bearings"].as_object().unwrap();
-    for name in bearings.keys() {
+    let names = || BEARINGS.iter().flat_map(|kind| own[kind].as_object().unwrap().keys());
+    for name in names() {
         for (own, other) in force(own, name).into_iter().zip(force(other, name)) {
             assert!((own - other).abs() < 1e-6 * (1.0 + own.abs()), "{name}: {own} {other}");
         }
     }
-    bearings.len()
+    names().count()
 }
 
 #[test]
@@ -143,6 +143,63 @@ fn invariant_a_machine_comes_back_as_it_went_out() {
         let own = equilibrium(&scratch, &std::fs::read_to_string(machine).unwrap());
         assert!(same_forces(&own, &equilibrium(&scratch, &text)) >= 4);
     }
+}
+
+/// The old file with a pair of tapered bearings on its second shaft: one by its type and designation, one as a concept whose name is all that it has.
+fn with_tapered_bearings() -> String {
+    let (before, after) = OLD.split_once("<component id=\"52\"").unwrap();
+    let (first, second) = after.split_once("<component id=\"53\"").unwrap();
+    let first = first
+        .replace("6206", "33006")
+        .replace("radial_grooved_ball_bearing", "radial_tapered_roller_bearing")
+        .replace("both_directions", "negative");
+    let (second, rest) = second.split_once("</component>").unwrap();
+    let second = second
+        .replace(
+            "name=\"Lager 6206 [53]\" type=\"rolling_bearing_with_catalog_geometry\"",
+            "name=\"to choose: 30206 [53]\" type=\"concept_bearing\"",
+        )
+        .replace("<attribute id=\"name\" unit=\"none\">6206</attribute>", "")
+        .replace("<attribute id=\"bearing_type\" unit=\"none\">radial_grooved_ball_bearing</attribute>", "")
+        .replace("no_direction", "positive");
+    format!("{before}<component id=\"52\"{first}<component id=\"53\"{second}</component>{rest}")
+}
+
+#[test]
+fn closed_form_tapered_bearings_of_a_file_hold_the_shaft_each_its_way() {
+    let scratch = Scratch::new("rexs-tapered");
+    let (text, told) = imported(&scratch, "gearbox.rexs", with_tapered_bearings().as_bytes());
+    let machine: toml::Table = text.parse().unwrap();
+    let bearings = machine["bearing"].as_array().unwrap();
+    let of = |name: &str| {
+        bearings.iter().find(|of| of.get("catalogue").is_some_and(|of| of.as_str() == Some(name))).unwrap()
+    };
+    let direction =
+        |name: &str| of(name)["mounting"].get("direction").map(|of| of.as_str().unwrap().to_owned());
+    assert_eq!((direction("33006").as_deref(), direction("30206")), (Some("-x"), None), "{text}");
+    assert!(
+        told.contains("to choose: 30206") && told.contains("simulated as the 30206 of its name"),
+        "{told}"
+    );
+    assert!(!told.contains("Lager 6206"), "{told}");
+    // The thrust of the teeth goes to the one that takes it; the other presses as much back as it is pushed by its own radial load.
+    let found = equilibrium(&scratch, &text);
+    let axial = 20.0 / (0.04 / 15_f64.to_radians().cos() / 2.0) * 15_f64.to_radians().tan();
+    let names = ["33006", "30206"].map(|name| of(name)["name"].as_str().unwrap().to_owned());
+    let held = names.each_ref().map(|name| {
+        found["bearings_by_stiffness"][name.as_str()]["force"][0]
+            .as_f64()
+            .unwrap_or_else(|| panic!("{found}"))
+    });
+    assert!((held[0] + held[1] - axial).abs() < 1e-3 * axial, "{held:?} {axial}");
+    assert!(held[0] > 0.0 && held[1] < 0.0, "{held:?}");
+    // There and back.
+    std::fs::write(scratch.path("machine.toml"), &text).unwrap();
+    let output = roulement(&["export", &scratch.path("machine.toml"), "-o", &scratch.path("back.rexs")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let back = imported(&scratch, "back-again.rexs", &std::fs::read(scratch.path("back.rexs")).unwrap()).0;
+    assert!(back.contains("direction = \"-x\"") && back.contains("catalogue = \"33006\""), "{back}");
+    assert_eq!(same_forces(&found, &equilibrium(&scratch, &back)), 4);
 }
 
 #[test]
