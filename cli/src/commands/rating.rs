@@ -10,6 +10,7 @@ use roulement::effects::rating::life_of_all;
 use roulement::model::bodies::Race;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
+use roulement::simulation::system::LinkOutputs;
 use roulement_cli::sweep::cases::Cases;
 
 use super::{load, say, tell};
@@ -119,10 +120,12 @@ struct Rated {
     lives: [Option<f64>; 2],
     /// [-] least static safety.
     safety: f64,
-    /// [N m] friction torque, its mean.
-    torque: f64,
-    /// \[W] all losses, their mean.
-    loss: f64,
+    /// [-] power of the load that a life goes by: 3 of balls, 10/3 of rollers (ISO 281).
+    exponent: f64,
+    /// [N m] friction torque, its mean; none of rollers, whose friction is not simulated.
+    torque: Option<f64>,
+    /// \[W] all losses, their mean; likewise.
+    loss: Option<f64>,
 }
 
 impl Rated {
@@ -175,14 +178,19 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
                 equivalent_load: life.equivalent_load,
                 lives: [Some(life.reference), life.modified],
                 safety: life.static_safety,
-                torque: outputs.friction_torque.abs(),
-                loss: outputs.losses.total(),
+                exponent: 3.0,
+                torque: Some(outputs.friction_torque.abs()),
+                loss: Some(outputs.losses.total()),
             };
-            let damage = duty.by_hours.then(|| part * rated.used());
-            say_row(&mut text, of_load, name, &rated, damage);
-            all.entry(name.to_string()).or_default().push(rated.clone());
-            here.push(rated);
+            here.push((name.to_owned(), rated));
         }
+        here.extend(of_rollers(&scene, &machine, part / whole));
+        for (name, rated) in &here {
+            let damage = duty.by_hours.then(|| part * rated.used());
+            say_row(&mut text, of_load, name, rated, damage);
+            all.entry(name.clone()).or_default().push(rated.clone());
+        }
+        let here: Vec<Rated> = here.into_iter().map(|(_, rated)| rated).collect();
         say_machine(&mut text, of_load, &here, duty.by_hours.then_some(*part));
     }
     let together: Vec<(&String, Rated)> = all.iter().map(|(name, rated)| (name, together(rated))).collect();
@@ -191,8 +199,31 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     }
     let of_all: Vec<Rated> = together.into_iter().map(|(_, rated)| rated).collect();
     say_machine(&mut text, "all", &of_all, duty.by_hours.then_some(whole));
+    let without = all.values().flatten().any(|rated| rated.loss.is_none());
+    tell(without.then(|| "note: rollers have no friction here: their torques and losses are empty, and those of the machine are without them".to_owned()));
     tell(all.iter().filter_map(|(name, rated)| worst(&duty, name, rated)));
     Ok(say(&text)?)
+}
+
+/// Roller bearings of a machine.
+fn of_rollers(scene: &MachineScene, machine: &Machine, share: f64) -> Vec<(String, Rated)> {
+    let (MachineScene::Shaft(scene), Machine::Shaft(system)) = (scene, machine) else { return vec![] };
+    let links = scene.link_names().zip(&system.outputs().links);
+    let of = |(name, link): (&str, &LinkOutputs)| {
+        let rollers = link.rollers.as_ref()?;
+        let rated = Rated {
+            share,
+            speed: link.state.rate[3].abs(),
+            equivalent_load: rollers.equivalent_load,
+            lives: [Some(rollers.life), None],
+            safety: rollers.static_safety,
+            exponent: 10.0 / 3.0,
+            torque: None,
+            loss: None,
+        };
+        Some((name.to_owned(), rated))
+    };
+    links.filter_map(of).collect()
 }
 
 /// Which load takes most of a bearing's life.
@@ -213,17 +244,20 @@ fn together(rated: &[Rated]) -> Rated {
         let used = rated.iter().map(|of| of.lives[which].map(|life| of.share * of.speed / life));
         used.sum::<Option<f64>>().map(|used| speed / used)
     });
-    // C over the cube root of the life, as of one load.
-    let rating = rated.first().and_then(|of| Some(of.equivalent_load * of.lives[0]?.cbrt()));
-    let equivalent_load = rating.zip(lives[0]).map_or(0.0, |(rating, life)| rating / life.cbrt());
+    // C over the root of the life, as of one load.
+    let exponent = rated.first().map_or(3.0, |of| of.exponent);
+    let root = |life: f64| life.powf(1.0 / exponent);
+    let rating = rated.first().and_then(|of| Some(of.equivalent_load * root(of.lives[0]?)));
+    let equivalent_load = rating.zip(lives[0]).map_or(0.0, |(rating, life)| rating / root(life));
     let safety = rated.iter().map(|of| of.safety).fold(f64::INFINITY, f64::min);
-    let mean = |get: fn(&Rated) -> f64| rated.iter().map(|of| of.share * get(of)).sum();
+    let mean = |get: fn(&Rated) -> Option<f64>| rated.iter().map(|of| Some(of.share * get(of)?)).sum();
     Rated {
         share: rated.iter().map(|of| of.share).sum(),
         speed,
         equivalent_load,
         lives,
         safety,
+        exponent,
         torque: mean(|of| of.torque),
         loss: mean(|of| of.loss),
     }
@@ -245,8 +279,8 @@ fn say_row(text: &mut String, load: &str, bearing: &str, rated: &Rated, damage: 
         modified,
         modified_hours,
         Some(rated.safety),
-        Some(rated.torque),
-        Some(rated.loss),
+        rated.torque,
+        rated.loss,
         damage,
     ];
     text.push_str(&format!("{load},{bearing},{}\n", numbers.map(cell).join(",")));
@@ -269,7 +303,7 @@ fn say_machine(text: &mut String, load: &str, bearings: &[Rated], hours: Option<
         modified,
         Some(bearings.iter().map(|of| of.safety).fold(f64::INFINITY, f64::min)),
         None,
-        Some(bearings.iter().map(|of| of.loss).sum()),
+        Some(bearings.iter().filter_map(|of| of.loss).sum()),
         hours.and_then(|hours| Some(hours / modified.or(reference)?)),
     ];
     text.push_str(&format!("{load},{MACHINE},{}\n", numbers.map(cell).join(",")));

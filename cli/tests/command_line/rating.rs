@@ -280,3 +280,50 @@ fn consistency_a_gearbox_under_ten_loads() {
     assert!(machine[..10].windows(2).all(|pair| pair[1][12] > pair[0][12]), "{text}");
     assert!(machine[9][12] > 0.25 * damage, "{text}");
 }
+
+#[test]
+fn closed_form_lives_of_rollers_add_up_as_those_of_balls() {
+    let scratch = Scratch::new("rating-rollers");
+    let machine = |speed: f64, force: f64| {
+        format!(
+            "[shaft]\nspeed = \"{speed} rpm\"\nmass = 2.0\npolar_inertia = 1e-3\ntransverse_inertia = 3e-3\n\
+             [[shaft.load]]\nname = \"pull\"\nposition = \"60 mm\"\nforce = [0, {force}, 0]\n\
+             [[bearing]]\nname = \"ball\"\ncatalogue = \"6206\"\nmounting = {{ position = 0 }}\n\
+             [[bearing]]\nname = \"roller\"\ncatalogue = \"NU 206\"\nmounting = {{ position = \"100 mm\" }}\n\
+             [load]\nduration = \"1 ms\"\noutput_interval = \"1 ms\"\n"
+        )
+    };
+    let duty = "[[duty]]\nname = \"1\"\nhours = 3000\n[[duty]]\nname = \"2\"\nhours = 1000\nset = { shaft = { speed = \"500 rpm\", load = { pull = { force = [0, 9000, 0] } } } }\n";
+    std::fs::write(scratch.path("machine.toml"), machine(1500.0, 4000.0) + duty).unwrap();
+    let output = roulement(&["rating", &scratch.path("machine.toml")]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && told.contains("rollers have no friction here"), "{told}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let row = |load: &str, bearing: &str| -> Vec<f64> {
+        let line = text
+            .lines()
+            .find(|line| line.starts_with(&format!("{load},{bearing},")))
+            .unwrap_or_else(|| panic!("{text}"));
+        line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
+    };
+    let near =
+        |ours: f64, theirs: f64| assert!((ours / theirs - 1.0).abs() < 1e-6, "{ours} {theirs}\n{text}");
+    let loads = [("1", 1500.0, 4000.0, 3000.0), ("2", 500.0, 9000.0, 1000.0)];
+    let mut used = 0.0;
+    for (load, speed, force, hours) in loads {
+        // Each is the life of an equilibrium.
+        std::fs::write(scratch.path("one.toml"), machine(speed, force)).unwrap();
+        let output = roulement(&["equilibrium", &scratch.path("one.toml"), "--json"]);
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let own = row(load, "roller");
+        near(own[6], found["bearings_by_stiffness"]["roller"]["L10r_hours"].as_f64().unwrap());
+        near(own[12], hours / own[6]);
+        assert!(own[10].is_nan() && own[11].is_nan(), "{text}");
+        used += hours / own[6];
+    }
+    near(row("all", "roller")[12], used);
+    near(row("all", "roller")[6], 4000.0 / used);
+    // Of the machine: both fail by Weibull's law (ISO 281's slope of 10/9).
+    let lives = ["ball", "roller"].map(|name| row("all", name)[6].powf(-10.0 / 9.0));
+    near(row("all", "(machine)")[6], (lives[0] + lives[1]).powf(-0.9));
+}

@@ -9,9 +9,10 @@ const OLD: &str = include_str!("../data/rexs/two_shafts_1.0.rexs");
 /// The same one as those of version 1.4 do: JSON, the second shaft from its other end, vectors in base64, loads in a spectrum.
 const NEW: &str = include_str!("../../../examples/gearbox/two_shafts.rexsj");
 
-/// The machine of a file's text, and what is told of it.
+/// Bearings in an equilibrium.
 const BEARINGS: [&str; 2] = ["bearings", "bearings_by_stiffness"];
 
+/// The machine of a file's text, and what is told of it.
 fn imported(scratch: &Scratch, name: &str, bytes: &[u8]) -> (String, String) {
     std::fs::write(scratch.path(name), bytes).unwrap();
     let output = roulement(&["import", &scratch.path(name)]);
@@ -186,11 +187,7 @@ fn closed_form_tapered_bearings_of_a_file_hold_the_shaft_each_its_way() {
     let found = equilibrium(&scratch, &text);
     let axial = 20.0 / (0.04 / 15_f64.to_radians().cos() / 2.0) * 15_f64.to_radians().tan();
     let names = ["33006", "30206"].map(|name| of(name)["name"].as_str().unwrap().to_owned());
-    let held = names.each_ref().map(|name| {
-        found["bearings_by_stiffness"][name.as_str()]["force"][0]
-            .as_f64()
-            .unwrap_or_else(|| panic!("{found}"))
-    });
+    let held = names.each_ref().map(|name| force(&found, name)[0]);
     assert!((held[0] + held[1] - axial).abs() < 1e-3 * axial, "{held:?} {axial}");
     assert!(held[0] > 0.0 && held[1] < 0.0, "{held:?}");
     // There and back.
