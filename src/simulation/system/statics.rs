@@ -316,13 +316,14 @@ impl Statics<'_> {
             let held = Vector6::new(x, y, z, 0.0, about_y, about_z);
             let inputs = &self.bearings[index].inputs;
             let arm = inputs.inner.pose.position - inputs.outer.pose.position;
-            // Along the axis the races carry the balls together; around it, friction does in part.
+            // The races carry the balls together. What these press with across the axis is in the load on the inner race; what acts along their orbit
+            // friction carries, on both races alike, which moves parts by less than they give way: all of it is the outer one's here.
             let balls =
                 self.bearings[index].model.bearing.ball.mass * self.bearings[index].state.balls.len() as f64;
             let ambient = self.bearings[index].model.ambient(&inputs.effects.frame.motion);
-            let field =
-                ambient.frame.map_or(0.0, |frame| frame.field(&Vector3::zeros(), &Vector3::zeros()).x);
-            let weight = Vector3::x() * (balls * (ambient.gravity.x + field));
+            let none = Vector3::zeros();
+            let field = ambient.frame.map_or(none, |frame| frame.field(&none, &none));
+            let weight = (ambient.gravity + field) * balls;
             force = force.max(held.fixed_rows::<3>(0).amax());
             let row = |i: usize| if i < 3 { i } else { i + 1 };
             let mut whole = Matrix6::zeros();
