@@ -2,6 +2,7 @@
 
 import { s, h, section } from './dom.js';
 import { arrowTo, marker, millimetres, short } from './drawing.js';
+import { meshesFigure } from './gears.js';
 import { shaftsOf } from './machine.js';
 import { ringSections, groovePoint } from './shape.js';
 import { digits, rpm } from './units.js';
@@ -20,25 +21,7 @@ export function shaftDrawing(run, open) {
     // A housing is around what is in it of this shaft.
     const one = { ...run, shaft: { ...run.shaft, ...own } };
     return [shafts.length > 1 ? h('h3', {}, own.name) : null, figureOf(one, open), facts(run, one.shaft)];
-  }), meshesFigure(run, shafts));
-}
-
-/** Gears in mesh on the axes of all shafts, seen from +x: pitch circles, and a dot where two of them touch. */
-function meshesFigure(run, shafts) {
-  const gears = shafts.flatMap(({ axis, gears: own, name }) => own.filter(gear => gear.mesh).map(gear => ({ ...gear, shaft: name, at: axis })));
-  if (!gears.length) return null;
-  const reach = axis => [Math.min, Math.max].map((most, i) => most(...gears.map(({ at, pitch_radius: radius }) => at[axis] + (i ? radius : -radius))));
-  const [[y0, y1], [z0, z1]] = [0, 1].map(reach);
-  const scale = Math.min((WIDTH - 2 * SIDE) / (y1 - y0), MOST / (z1 - z0));
-  const left = 0.5 * (WIDTH - scale * (y1 - y0)), n = value => value.toFixed(2);
-  const [Y, Z] = [y => n(left + (y - y0) * scale), z => n(30 + (z1 - z) * scale)];
-  const height = Math.round(scale * (z1 - z0) + 60);
-  const out = gears.flatMap(({ mesh, teeth, shaft, at: [y, z], pitch_radius: radius, azimuth }, i) => [
-    s('g', { class: 'gear-seen' }, s('title', {}, `${mesh}: ${teeth} teeth on ${shaft}`), s('circle', { cx: Y(y), cy: Z(z), r: n(radius * scale), class: 'gear' })),
-    i % 2 ? null : s('circle', { cx: Y(y + radius * Math.cos(azimuth)), cy: Z(z + radius * Math.sin(azimuth)), r: 4, class: 'contact outer' })]).filter(Boolean);
-  for (const { name, axis: [y, z] } of shafts) out.push(s('circle', { cx: Y(y), cy: Z(z), r: 3, class: 'place' }), s('text', { x: Number(Y(y)) + 6, y: Number(Z(z)) - 6, class: 'tick place-name' }, name));
-  out.push(...arrowTo([14, height - 14], [14, height - 50], 'z'), ...arrowTo([14, height - 14], [42, height - 14], 'y'));
-  return [h('h3', {}, 'The meshes'), h('figure', {}, h('div', { class: 'scroll' }, s('svg', { viewBox: `0 0 ${WIDTH} ${height}`, role: 'img', class: 'shaft meshes', 'aria-label': `Meshes: ${run.shaft.meshes.join(', ')}` }, out)), h('figcaption', {}, 'Seen from +x, to scale: pitch circles of the gears, and where they touch.'))];
+  }), meshesFigure(run, shafts, WIDTH));
 }
 
 function figureOf(run, open) {

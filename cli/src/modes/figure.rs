@@ -4,9 +4,10 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
+use super::lines::{Line, Source};
 use super::table::rpm;
 use super::{Found, Modes, Row};
-use crate::report::fine::{FINE, Key, LINE, MARGIN, axes, headed, picture};
+use crate::report::fine::{FINE, Key, LABEL, LINE, MARGIN, axes, headed, picture};
 use crate::report::style::{Area, COLOURS, Drawn, PlotError};
 
 /// \[pixel] size of a panel.
@@ -25,6 +26,16 @@ const LOW: usize = 4;
 const DECAYS: RGBColor = COLOURS[0];
 const GROWS: RGBColor = COLOURS[1];
 const TURN: RGBColor = COLOURS[6];
+const MESH: RGBColor = COLOURS[2];
+const OF_BEARING: RGBColor = COLOURS[5];
+/// [-] room beside the largest speed, over that, and above a panel's highest frequency, over that: for the names of lines.
+const BESIDE: f64 = 0.16;
+const ABOVE: f64 = 0.05;
+/// [-] of the highest frequency, how far apart names beside a panel stand; of the largest speed, those above it.
+const ROW: f64 = 0.05;
+const COLUMN: f64 = 0.12;
+/// \[unit] dash and gap of multiples.
+const DASH: (i32, i32) = (4 * FINE as i32, 4 * FINE as i32);
 
 /// Draws the motions of a machine over its speed.
 ///
@@ -67,7 +78,7 @@ fn marks(modes: &Modes) -> Vec<Mark> {
     modes.rows.iter().flat_map(of_row).collect()
 }
 
-/// \[Hz] highest frequency that is shown: beyond all that grows, the fourth at the lowest speed, and the turn.
+/// \[Hz] highest frequency that is shown: beyond all that grows, the fourth at the lowest speed, the turn, and the teeth.
 fn highest(modes: &Modes, marks: &[Mark]) -> f64 {
     let turn = fastest(modes) / 60.0;
     let low = modes.rows.iter().find_map(|row| {
@@ -75,7 +86,9 @@ fn highest(modes: &Modes, marks: &[Mark]) -> f64 {
         motions.iter().take(LOW).next_back().map(|found| found.motion.frequency)
     });
     let growing = marks.iter().filter(|mark| mark.grows).map(|mark| mark.frequency);
-    growing.chain(low).chain([HIGHEST * turn]).fold(1.0, f64::max) * 1.1
+    let teeth =
+        modes.lines.iter().filter(|line| line.source == Source::Mesh).map(|line| line.per_turn * turn);
+    growing.chain(low).chain(teeth).chain([HIGHEST * turn]).fold(1.0, f64::max) * 1.1
 }
 
 /// \[rpm] largest speed of the table.
@@ -84,23 +97,65 @@ fn fastest(modes: &Modes) -> f64 {
 }
 
 fn frequencies(area: &Area<'_>, modes: &Modes, marks: &[Mark]) -> Drawn {
-    let keys = [("decays", Key::Dot, DECAYS), ("grows", Key::Dot, GROWS), ("the turn", Key::Line, TURN)];
+    let has = |source| modes.lines.iter().any(|line| line.source == source);
+    let mut keys = vec![("decays", Key::Dot, DECAYS), ("grows", Key::Dot, GROWS), ("turns", Key::Line, TURN)];
+    if has(Source::Mesh) {
+        keys.push(("teeth", Key::Line, MESH));
+    }
+    if has(Source::Bearing) {
+        keys.push(("bearings", Key::Line, OF_BEARING));
+    }
     let rest = headed(area, "frequency", &keys)?;
     let (fastest, highest) = (fastest(modes), highest(modes, marks));
     let mut chart = ChartBuilder::on(&rest)
         .margin(MARGIN)
         .x_label_area_size(NUMBERS[1] * FINE)
         .y_label_area_size(NUMBERS[0] * FINE)
-        .build_cartesian_2d(0.0..1.02 * fastest, 0.0..highest)?;
+        .build_cartesian_2d(0.0..(1.0 + BESIDE) * fastest, 0.0..(1.0 + ABOVE) * highest)?;
     axes(&mut chart.configure_mesh(), "speed [rpm]", "frequency [Hz]").draw()?;
-    let turn = [(0.0, 0.0), (fastest, fastest / 60.0)];
-    chart.draw_series(LineSeries::new(turn, TURN.stroke_width(LINE)))?;
+    // Names from the steepest line on, each where there is room; lines whose names have none are in the text.
+    let mut named: Vec<(f64, f64)> = vec![];
+    for (line, multiple) in drawn(&modes.lines) {
+        let (colour, width) = match line.source {
+            Source::Turn => (TURN, LINE),
+            Source::Mesh => (MESH, LINE),
+            Source::Bearing => (OF_BEARING, FINE),
+        };
+        let slope = f64::from(multiple) * line.per_turn / 60.0;
+        let end = fastest.min(highest / slope);
+        let ends = [(0.0, 0.0), (end, slope * end)];
+        if multiple > 1 {
+            chart.draw_series(DashedLineSeries::new(ends, DASH.0, DASH.1, colour.stroke_width(FINE)))?;
+        } else {
+            chart.draw_series(LineSeries::new(ends, colour.stroke_width(width)))?;
+        }
+        let beside = |(x, y): &(f64, f64)| {
+            (x - end).abs() < COLUMN * fastest && (y - slope * end).abs() < ROW * highest
+        };
+        if multiple == 1 && !named.iter().any(beside) {
+            named.push((end, slope * end));
+            let above = if end < fastest { 0.6 * ROW * highest } else { 0.4 * ROW * highest };
+            let style = LABEL.into_font().color(&colour);
+            chart.draw_series([Text::new(format!(" {}", line.name), (end, slope * end + above), style)])?;
+        }
+    }
     let shown = marks.iter().filter(|mark| mark.frequency <= highest);
     chart.draw_series(shown.map(|mark| {
         let colour = if mark.grows { GROWS } else { DECAYS };
         Circle::new((mark.speed, mark.frequency), MARK, colour.filled())
     }))?;
     Ok(())
+}
+
+/// Lines and their multiples, those of shafts and meshes first, the steepest ones of each first.
+fn drawn(lines: &[Line]) -> Vec<(&Line, u32)> {
+    let mut all: Vec<_> =
+        lines.iter().flat_map(|line| (1..=line.multiples()).map(move |multiple| (line, multiple))).collect();
+    all.sort_by(|(one, _), (other, _)| {
+        let is_of_bearing = |line: &Line| line.source == Source::Bearing;
+        is_of_bearing(one).cmp(&is_of_bearing(other)).then(other.per_turn.total_cmp(&one.per_turn))
+    });
+    all
 }
 
 fn growths(area: &Area<'_>, modes: &Modes, marks: &[Mark]) -> Drawn {

@@ -1,6 +1,7 @@
 //! Small motions of a machine about its running state, over the speed: which grow, which decay.
 
 mod figure;
+mod lines;
 mod table;
 
 use roulement::effects::cage::CageKind;
@@ -11,6 +12,7 @@ use roulement::simulation::motions::Motion;
 use roulement::simulation::system::{at_speed, largest_speed};
 
 pub use figure::{write as write_figure, write_growths};
+pub use lines::{Line, Meeting, meetings};
 pub use table::{to_csv, to_json, to_text};
 
 /// [-] largest speed of the scene, that of the table.
@@ -81,6 +83,8 @@ pub struct Modes {
     pub own: Row,
     /// At other speeds, by growing speed; none where nothing turns.
     pub rows: Vec<Row>,
+    /// What goes with the speed: turns, teeth, cage and damage.
+    pub lines: Vec<Line>,
 }
 
 /// Request.
@@ -107,6 +111,7 @@ impl Modes {
         let scene = free.as_ref().unwrap_or(scene);
         let own = speed_of(scene, asked.time);
         let (after, motions) = at(scene, asked)?;
+        let lines = lines::of(&Machine::starting_at(scene, asked.time)?);
         let up_to = asked.up_to.unwrap_or(match scene {
             MachineScene::Bearing(_) => BEYOND * own,
             MachineScene::Shaft(scene) => largest_speed(scene),
@@ -122,7 +127,7 @@ impl Modes {
             MachineScene::Bearing(scene) => scene.title.clone(),
             MachineScene::Shaft(scene) => scene.title.clone(),
         };
-        Ok(Self { title, freed, own: Row { speed: own, after, motions }, rows })
+        Ok(Self { title, freed, own: Row { speed: own, after, motions }, rows, lines })
     }
 }
 

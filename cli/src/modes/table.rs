@@ -6,10 +6,13 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use super::{Found, Modes, Row};
+use super::{Found, Meeting, Modes, Row, meetings};
 
 /// Motions of a row of the text that are shown: those that matter lie low.
 const SHOWN: usize = 6;
+
+/// Meetings of lines and motions that the text has.
+const TOLD: usize = 16;
 
 /// \[rpm] of a speed [rad/s].
 pub(super) fn rpm(speed: f64) -> f64 {
@@ -81,8 +84,34 @@ fn write(out: &mut String, modes: &Modes) -> std::fmt::Result {
     }
     let grows = |row: &&Row| row.motions.as_ref().is_ok_and(|motions| motions.iter().any(Found::grows));
     match modes.rows.iter().find(grows) {
-        Some(row) => writeln!(out, "\nfirst growth in this table at {:.1} rpm", rpm(row.speed)),
-        None => writeln!(out, "\nnothing grows at any speed of this table"),
+        Some(row) => writeln!(out, "\nfirst growth in this table at {:.1} rpm", rpm(row.speed))?,
+        None => writeln!(out, "\nnothing grows at any speed of this table")?,
+    }
+    write_meetings(out, &meetings(&modes.lines, &modes.rows))
+}
+
+fn write_meetings(out: &mut String, met: &[Meeting]) -> std::fmt::Result {
+    if met.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nturns and teeth meet motions of little damping (up to 10 %):")?;
+    // Teeth themselves before their multiples.
+    let mut met: Vec<&Meeting> = met.iter().collect();
+    met.sort_by_key(|meeting| meeting.multiple);
+    for Meeting { line, multiple, speed, frequency, damping, shape } in met.iter().take(TOLD) {
+        let times = if *multiple == 1 { String::new() } else { format!("{multiple} x ") };
+        writeln!(
+            out,
+            "{:>11.1} rpm {frequency:9.2} Hz, damping {damping:7.5}: {times}{line} meets {shape}",
+            rpm(*speed)
+        )?;
+    }
+    match met.len().saturating_sub(TOLD) {
+        0 => Ok(()),
+        more => writeln!(
+            out,
+            "            and {more} more, of multiples of teeth or at higher speeds: --json has all of them"
+        ),
     }
 }
 
@@ -113,6 +142,15 @@ pub fn to_json(modes: &Modes) -> Value {
         "balls_freed": modes.freed,
         "own": row(&modes.own),
         "speeds": modes.rows.iter().map(row).collect::<Vec<_>>(),
+        "lines": modes.lines.iter().map(|line| json!({ "name": line.name, "per_turn": line.per_turn })).collect::<Vec<_>>(),
+        "meetings": meetings(&modes.lines, &modes.rows).into_iter().map(|met| json!({
+            "line": met.line,
+            "multiple": met.multiple,
+            "speed": met.speed,
+            "frequency": met.frequency,
+            "damping": met.damping,
+            "shape": met.shape,
+        })).collect::<Vec<_>>(),
     })
 }
 

@@ -159,6 +159,7 @@ fn spectrum(spectrum: &Spectrum) -> Value {
         "window": spectrum.window,
         "shaft": spectrum.shaft,
         "marked": spectrum.marked.map(|(name, frequency)| json!([name, frequency])),
+        "meshes": spectrum.meshes.iter().map(|mesh| json!([mesh.name, mesh.frequency])).collect::<Vec<_>>(),
     })
 }
 

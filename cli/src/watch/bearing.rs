@@ -15,6 +15,7 @@ use crate::report::limits::Limits;
 use crate::report::losses::Sums as LossSums;
 use crate::report::means::{Blocks, largest};
 use crate::report::quantities::{values, weights};
+use crate::report::spectrum::meshes::Mesh;
 use crate::report::spectrum::{Recorder, Spectrum};
 use crate::report::thinned::Thinned;
 
@@ -55,8 +56,8 @@ pub struct BearingSeen {
 }
 
 impl BearingWatch {
-    /// Gatherer of a simulation that has not been played yet, and phases of its run.
-    pub fn of(simulation: &Simulation, phases: &[PhaseSection]) -> Self {
+    /// Gatherer of a simulation that has not been played yet, phases of its run, and the meshes of its machine.
+    pub fn of(simulation: &Simulation, phases: &[PhaseSection], meshes: &[Mesh]) -> Self {
         let peaks = PEAKS.iter().filter(|peak| peak.is_of(simulation));
         let peaks: Vec<_> = peaks.map(|peak| (peak.name.into(), peak.unit)).collect();
         Self {
@@ -66,7 +67,7 @@ impl BearingWatch {
                 &peaks,
                 lengths(simulation).pitch_radius,
             ),
-            spectrum: Recorder::of(simulation),
+            spectrum: Recorder::of(simulation, meshes.to_vec()),
             energy: EnergyWatch::default(),
             limits: Limits::default(),
             places: Thinned::default(),
@@ -103,11 +104,11 @@ impl BearingWatch {
         alarms
     }
 
-    /// Takes a row.
-    pub fn push(&mut self, simulation: &Simulation) {
+    /// Takes a row, with what the meshes of its machine do.
+    pub fn push(&mut self, simulation: &Simulation, teeth: &[[f64; 3]]) {
         let outputs = simulation.outputs();
         if let Some(spectrum) = &mut self.spectrum {
-            spectrum.push(outputs);
+            spectrum.push(outputs, teeth);
         }
         self.energy.push(outputs);
         if let Some(place) = Place::of(simulation) {

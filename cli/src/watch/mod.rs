@@ -22,6 +22,7 @@ pub use shaft::{ShaftSeen, ShaftWatch};
 use crate::error::Run;
 use crate::report::figures::Figures;
 use crate::report::means::Means;
+use crate::report::spectrum::meshes;
 
 /// Gathers while a machine runs.
 pub struct Watch {
@@ -114,8 +115,9 @@ impl Watch {
             Machine::Bearing(bearing) => &bearing.scene().phase,
             Machine::Shaft(system) => &system.scene().phases,
         };
+        let meshes = machine.shaft().map_or(vec![], meshes::of);
         Self {
-            bearings: machine.bearings().map(|(_, bearing)| BearingWatch::of(bearing, phases)).collect(),
+            bearings: machine.bearings().map(|(_, own)| BearingWatch::of(own, phases, &meshes)).collect(),
             shaft: machine.shaft().map(ShaftWatch::of),
             exciting: machine.shaft().map_or(Exciting::default(), |system| Exciting::of(system.scene())),
             alarms: vec![],
@@ -124,8 +126,9 @@ impl Watch {
 
     /// Takes a row.
     pub fn push(&mut self, machine: &Machine) {
+        let teeth = machine.shaft().map_or(vec![], meshes::turns);
         for ((_, bearing), watch) in machine.bearings().zip(&mut self.bearings) {
-            watch.push(bearing);
+            watch.push(bearing, &teeth);
         }
         if let (Some(watch), Some(system)) = (&mut self.shaft, machine.shaft()) {
             watch.push(system);

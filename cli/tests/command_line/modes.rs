@@ -252,3 +252,58 @@ fn limit_contacts_that_are_not_rolled_over_in_a_period_feed_no_growth() {
     assert!(slow.iter().all(|motion| motion["grows"] == false), "{slow:?}");
     assert_eq!(growing(&found), []);
 }
+
+/// Lines of Campbell's figure: turns of both shafts, teeth, cage and damage of every bearing; and where turns and teeth meet a motion.
+#[test]
+fn closed_form_lines_of_a_gearbox_go_with_its_speed_and_meet_its_motions() {
+    let scratch = Scratch::new("modes-gears");
+    std::fs::write(scratch.path("gears.toml"), crate::shaft_keeps::meshed()).unwrap();
+    let scene = scratch.path("gears.toml");
+    let arguments = [
+        "modes",
+        &scene,
+        "--after",
+        "0.2 ms",
+        "--speeds",
+        "4",
+        "--up-to",
+        "9000 rpm",
+        "--json",
+        "-o",
+        &scratch.path("out"),
+    ];
+    let found = json(&arguments);
+    let lines = found["lines"].as_array().unwrap();
+    let per_turn = |name: &str| -> f64 {
+        let line =
+            lines.iter().find(|line| line["name"] == name).unwrap_or_else(|| panic!("{name}: {lines:?}"));
+        line["per_turn"].as_f64().unwrap()
+    };
+    assert!((per_turn("one") - 1.0).abs() < 1e-9 && (per_turn("two") - 0.5).abs() < 1e-6);
+    assert!((per_turn("gears") - 20.0).abs() < 1e-9);
+    // Nine balls between them: those that pass the outer race and those that pass the inner one.
+    for (bearing, turns) in [("one-left", 1.0), ("two-right", 0.5)] {
+        let [cage, outer, inner] = ["FTF", "BPFO", "BPFI"].map(|what| per_turn(&format!("{what} {bearing}")));
+        assert!(
+            (outer / cage - 9.0).abs() < 1e-6 && (outer + inner - 9.0 * turns).abs() < 1e-3,
+            "{outer} {inner}"
+        );
+    }
+    let met = found["meetings"].as_array().unwrap();
+    assert!(met.iter().any(|one| one["line"] == "gears"), "{met:?}");
+    for one in met {
+        let of = |key: &str| one[key].as_f64().unwrap();
+        let hand =
+            of("multiple") * per_turn(one["line"].as_str().unwrap()) * of("speed") / std::f64::consts::TAU;
+        assert!((of("frequency") / hand - 1.0).abs() < 1e-9 && of("damping") < 0.1, "{one}");
+    }
+    let picture = scratch.read("out/campbell.svg");
+    for name in ["gears", "teeth", "bearings"] {
+        assert!(picture.contains(name), "{name}");
+    }
+    let text = String::from_utf8(roulement(&arguments[..8]).stdout).unwrap();
+    assert!(
+        text.contains("turns and teeth meet motions of little damping") && text.contains("gears meets"),
+        "{text}"
+    );
+}

@@ -251,7 +251,7 @@ fn what_accuracy_costs_on_a_shaft_is_measured() {
 }
 
 /// Two shafts with 20 and 40 teeth of 2 mm in mesh, the second one braked by 30 N m.
-fn meshed() -> String {
+pub fn meshed() -> String {
     let shaft = |name: &str, origin: &str, drive: &str| {
         let bearing = |side: &str, at: &str, way: &str| {
             format!(

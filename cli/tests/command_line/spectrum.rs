@@ -141,3 +141,33 @@ fn closed_form_a_healthy_race_that_was_struck_rings_at_its_own_frequency() {
         assert!(!["BPFO", "BPFI", "BSF"].iter().any(|name| peak.contains(name)), "{summary}");
     }
 }
+
+/// Teeth whose stiffness varies are heard in the bearings of both shafts, at their frequency, and named.
+#[test]
+fn closed_form_a_mesh_is_named_in_the_spectra_of_the_bearings_around_it() {
+    let scratch = Scratch::new("spectrum-mesh");
+    let text = crate::shaft_keeps::meshed()
+        .replace("\"300 rpm\"", "\"3000 rpm\"")
+        .replace("\"2 ms\"", "\"24 ms\"")
+        .replace("damping_ratio = 0.1", "damping_ratio = 0.1\nstiffness_variation = [{ amplitude = \"30 %\" }]")
+        .replace(
+            "[[bearing]]\n",
+            "[[bearing]]\nset = { effects = { creep = \"saturated\", heathcote_slip = false, frequency_outputs = true } }\n",
+        );
+    std::fs::write(scratch.path("gears.toml"), text).unwrap();
+    let output = roulement(&["run", &scratch.path("gears.toml"), "-o", &scratch.path("out")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for bearing in ["one-left", "two-right"] {
+        let summary = scratch.read(&format!("out/{bearing}/summary.txt"));
+        let teeth =
+            summary.lines().find(|line| line.contains("teeth gears ")).unwrap_or_else(|| panic!("{summary}"));
+        let frequency: f64 = teeth.split(' ').rev().nth(1).unwrap().parse().unwrap();
+        // 20 teeth at 50 turns a second.
+        assert!((frequency - 1000.0).abs() < 0.5, "{teeth}");
+        assert!(summary.lines().any(|line| line.contains("peak") && line.contains("; gears ")), "{summary}");
+        let record: Value = serde_json::from_str(&scratch.read(&format!("out/{bearing}/run.json"))).unwrap();
+        let marked = &record["spectrum"]["meshes"][0];
+        assert!(marked[0] == "gears" && (marked[1].as_f64().unwrap() - frequency).abs() < 0.01, "{marked}");
+        assert!(scratch.read(&format!("out/{bearing}/spectrum.svg")).contains("gears"));
+    }
+}

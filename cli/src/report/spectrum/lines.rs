@@ -1,5 +1,6 @@
 //! Peaks of an amplitude spectrum, and the frequencies that they may belong to.
 
+use super::meshes::Mesh;
 use super::welch::{Amplitudes, peak};
 
 /// [-] multiples of a frequency that are looked for, and marked.
@@ -12,8 +13,8 @@ const ON: f64 = 0.5;
 /// [-] how far a race rings from its own frequency at rest: contacts stiffen with load.
 const RINGS: f64 = 0.03;
 
-/// A frequency of a bearing: its name and \[Hz].
-pub type Named = (&'static str, f64);
+/// A frequency of a bearing or a mesh: its name and \[Hz].
+pub type Named<'a> = (&'a str, f64);
 
 /// A peak of one signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,14 +56,26 @@ pub fn largest<const N: usize>(
 /// The line that a frequency \[Hz] is on, `2 x BPFI - shaft`, and \[Hz] it; none where it is on none of those that are looked for.
 ///
 /// `named` is FTF, BPFO, BPFI, BSF and the turns of the shaft. A place of the inner race comes round with the shaft and one of a ball with
-/// the cage: multiples of BPFI and BSF have lines at these distances on either side. On a line is what is within half of `spacing` \[Hz] of it;
+/// the cage: multiples of BPFI and BSF have lines at these distances on either side, and teeth those of both of their shafts. On a line is what is within half of
+/// `spacing` \[Hz] of it;
 /// of several that is the lowest multiple, and lines in the middle come before those beside them.
-pub fn line_of(named: &[Named; 5], frequency: f64, spacing: f64) -> Option<(String, f64)> {
+pub fn line_of(
+    named: &[Named<'_>; 5],
+    meshes: &[Mesh],
+    frequency: f64,
+    spacing: f64,
+) -> Option<(String, f64)> {
     let [cage, bpfo, bpfi, bsf, shaft] = *named;
     let mut lines: Vec<(bool, u32, String, f64)> = vec![];
-    for ((name, base), beside) in
-        [(cage, None), (shaft, None), (bpfo, None), (bpfi, Some(shaft)), (bsf, Some(cage))]
-    {
+    let of_bearing: [(Named<'_>, &[Named<'_>]); 5] =
+        [(cage, &[]), (shaft, &[]), (bpfo, &[]), (bpfi, &[shaft]), (bsf, &[cage])];
+    let turns: Vec<[Named<'_>; 2]> = meshes
+        .iter()
+        .map(|mesh| mesh.shafts.each_ref().map(|(name, turns)| (name.as_str(), *turns)))
+        .collect();
+    let of_meshes =
+        meshes.iter().zip(&turns).map(|(mesh, turns)| ((mesh.name.as_str(), mesh.frequency), &turns[..]));
+    for ((name, base), beside) in of_bearing.into_iter().chain(of_meshes) {
         // What turns less than once in the window has no lines.
         if base < spacing {
             continue;
@@ -73,7 +86,7 @@ pub fn line_of(named: &[Named; 5], frequency: f64, spacing: f64) -> Option<(Stri
             let text = if multiple == 1 { name.to_string() } else { format!("{multiple} x {name}") };
             let line = f64::from(multiple) * base;
             for (sign, by) in [(" + ", 1.0), (" - ", -1.0)] {
-                if let Some((other, distance)) = beside {
+                for (other, distance) in beside {
                     lines.push((true, multiple, format!("{text}{sign}{other}"), line + by * distance));
                 }
             }
@@ -110,7 +123,13 @@ mod tests {
         assert_eq!(seen, [(0, 4.0, 20.0), (1, 3.0, 40.0), (0, 1.0, 60.0)]);
         assert_eq!(largest(&spectrum, 0..2, 2.0, 2, 0.0).len(), 2);
         let named = [("FTF", 20.0), ("BPFO", 177.0), ("BPFI", 264.0), ("BSF", 115.0), ("shaft", 49.0)];
-        let name = |frequency, spacing| line_of(&named, frequency, spacing).map(|(name, _)| name);
+        let mesh = Mesh {
+            name: "gears".into(),
+            frequency: 1127.0,
+            shafts: [("one".into(), 49.0), ("two".into(), 16.1)],
+        };
+        let meshes = [mesh];
+        let name = |frequency, spacing| line_of(&named, &meshes, frequency, spacing).map(|(name, _)| name);
         let on = |frequency, spacing| name(frequency, spacing).unwrap();
         for (frequency, name) in [
             (20.5, "FTF"),
@@ -122,6 +141,9 @@ mod tests {
             (6.0 * 115.0 - 20.0, "6 x BSF - FTF"),
             (10.0 * 177.0, "10 x BPFO"),
             (7.0 * 49.0, "7 x shaft"),
+            (1127.3, "gears"),
+            (2.0 * 1127.0 + 16.1, "2 x gears + two"),
+            (1127.0 - 49.0, "gears - one"),
         ] {
             assert_eq!(on(frequency, 1.0), name, "{frequency}");
         }
@@ -133,7 +155,7 @@ mod tests {
         assert_eq!(name(8.0 * 177.0, 30.0), None);
         assert_eq!(on(3.0 * 177.0, 30.0), "2 x BPFI");
         for still in [0.0, 1e-12] {
-            assert_eq!(line_of(&named.map(|(name, _)| (name, still)), 0.5, 1.0), None);
+            assert_eq!(line_of(&named.map(|(name, _)| (name, still)), &[], 0.5, 1.0), None);
         }
         // A race rings near its own frequencies.
         let own = [412.0, 691.0];

@@ -1,10 +1,11 @@
 //! Spectrum of the wrench of the bearing on the race that the load moves, over the second half of a run: by frequency, and by order over the
-//! turns of the shaft, with the frequencies of cage and damage by the running cage speed.
+//! turns of the shaft, with the frequencies of cage and damage by the running cage speed, and those of the teeth of its machine.
 //!
 //! Rows see up to half of their own frequency. What is faster folds back below it: `load.output_interval` is to be short
 //! enough for what rings, or its energy is small.
 
 pub mod lines;
+pub mod meshes;
 pub mod picture;
 pub mod welch;
 mod words;
@@ -20,6 +21,7 @@ use roulement::simulation::outputs::{Outputs, RaceOutput};
 use roulement::simulation::play::Rows;
 
 use lines::Named;
+use meshes::Mesh;
 use welch::{Amplitudes, Welch};
 
 /// [-] signals: force and moment.
@@ -54,6 +56,7 @@ pub struct Recorder {
     /// \[s] first and last time of the window.
     window: [f64; 2],
     speeds: Speeds,
+    meshes: Vec<Mesh>,
     own: Vec<f64>,
 }
 
@@ -85,7 +88,9 @@ pub struct Spectrum {
     /// \[Hz] by how much they change over the window.
     pub shaft_change: f64,
     /// Mean frequencies of cage and damage.
-    pub marked: [Named; 4],
+    pub marked: [Named<'static>; 4],
+    /// Mean frequencies of the meshes of its machine.
+    pub meshes: Vec<Mesh>,
     /// \[Hz] own frequencies of the race under the script's loads in the middle of the window, where it has some.
     pub own: Vec<f64>,
 }
@@ -96,8 +101,8 @@ fn turns(race: &RaceOutput) -> f64 {
 }
 
 impl Recorder {
-    /// For a simulation, if its scene asks for it.
-    pub fn of(simulation: &Simulation) -> Option<Self> {
+    /// For a simulation in a machine with these meshes, if its scene asks for it.
+    pub fn of(simulation: &Simulation, meshes: Vec<Mesh>) -> Option<Self> {
         let scene = simulation.scene();
         let rows = Rows::of(simulation);
         let count = rows.count() + 1;
@@ -116,6 +121,7 @@ impl Recorder {
                 least: [f64::INFINITY; 2],
                 most: [f64::NEG_INFINITY; 2],
             },
+            meshes,
             own: natural_frequency::of_race(
                 simulation.model(),
                 scene,
@@ -124,8 +130,8 @@ impl Recorder {
         })
     }
 
-    /// Takes a row.
-    pub fn push(&mut self, outputs: &Outputs) {
+    /// Takes a row, with what its meshes do ([`meshes::turns`]).
+    pub fn push(&mut self, outputs: &Outputs, teeth: &[[f64; 3]]) {
         let row = self.seen;
         self.seen += 1;
         // The last row of a run whose duration is no multiple of the interval is out of step.
@@ -147,11 +153,12 @@ impl Recorder {
             wrench.moment.z,
         ]);
         self.speeds.push(outputs);
+        self.meshes.iter_mut().zip(teeth).for_each(|(mesh, now)| mesh.add(*now));
     }
 
     /// The spectrum; none of a run that ended before a few rows of its second half.
     pub fn finish(self) -> Option<Spectrum> {
-        let Self { race, interval, window, welch, speeds, own, .. } = self;
+        let Self { race, interval, window, welch, speeds, meshes, own, .. } = self;
         let amplitudes = welch.finish()?;
         let mean = |sum: f64| sum / speeds.rows;
         // The shaft is the race that the load moves, or the other one where that stands.
@@ -167,6 +174,7 @@ impl Recorder {
             shaft: turns[shaft],
             shaft_change: speeds.most[shaft] - speeds.least[shaft],
             marked: [("FTF", ftf), ("BPFO", bpfo), ("BPFI", bpfi), ("BSF", bsf)],
+            meshes: meshes.into_iter().map(|mesh| mesh.over(speeds.rows)).collect(),
             own,
         })
     }
@@ -190,6 +198,12 @@ impl Spectrum {
     /// \[Hz] from one frequency to the next.
     pub fn spacing(&self) -> f64 {
         1.0 / (self.amplitudes.rows as f64 * self.interval)
+    }
+
+    /// \[Hz] fastest of the marked frequencies.
+    fn fastest(&self) -> f64 {
+        let meshes = self.meshes.iter().map(|mesh| mesh.frequency);
+        self.marked.iter().map(|line| line.1).chain(meshes).fold(0.0, f64::max)
     }
 
     /// [-] order of a frequency \[Hz]; none where no race turns once while a line is taken.

@@ -49,7 +49,7 @@ fn curve(spectrum: &Spectrum, signal: usize, end: f64, scale: f64) -> Vec<(f64, 
 
 fn panel(spectrum: &Spectrum, first: usize, label: &str, area: &Area<'_>) -> Drawn {
     let highest = 0.5 / spectrum.interval;
-    let fastest = spectrum.marked.iter().map(|line| line.1).fold(spectrum.shaft, f64::max);
+    let fastest = spectrum.fastest().max(spectrum.shaft);
     let end = if fastest > spectrum.spacing() {
         highest.min(AIR * f64::from(MULTIPLES) * fastest)
     } else {
@@ -78,8 +78,10 @@ fn panel(spectrum: &Spectrum, first: usize, label: &str, area: &Area<'_>) -> Dra
         .x_labels(12)
         .y_label_formatter(&|value| format!("{value:.3}"))
         .draw()?;
-    for (i, (name, frequency)) in spectrum.marked.into_iter().enumerate() {
-        let colour = COLOURS[FIRST_COLOUR + i];
+    let of_bearing =
+        spectrum.marked.into_iter().enumerate().map(|(i, line)| (line, COLOURS[FIRST_COLOUR + i]));
+    let of_meshes = spectrum.meshes.iter().map(|mesh| ((mesh.name.as_str(), mesh.frequency), BLACK));
+    for (i, ((name, frequency), colour)) in of_bearing.chain(of_meshes).enumerate() {
         for multiple in 1..=MULTIPLES {
             let x = f64::from(multiple) * frequency * scale;
             if frequency <= 0.0 || x > end * scale {

@@ -41,6 +41,18 @@ impl Display for Spectrum {
             write!(f, " {name} {frequency:.2},")?;
         }
         writeln!(f, " shaft {:.2} Hz", self.shaft)?;
+        for (index, mesh) in self.meshes.iter().enumerate() {
+            write!(
+                f,
+                "{} {} {:.2}",
+                if index == 0 { "                 teeth" } else { "," },
+                mesh.name,
+                mesh.frequency
+            )?;
+        }
+        if !self.meshes.is_empty() {
+            writeln!(f, " Hz")?;
+        }
         self.warn(f)?;
         for (signals, most) in [(0..3, FORCES), (3..6, MOMENTS)] {
             for peak in largest(&self.amplitudes, signals, spacing, most, SHARE) {
@@ -55,7 +67,7 @@ impl Spectrum {
     /// Limits of the lines.
     fn warn(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let says = "                 ";
-        let fastest = self.marked.iter().map(|line| line.1).fold(0.0, f64::max);
+        let fastest = self.fastest();
         let length = self.amplitudes.rows as f64 * self.interval;
         let [(_, cage), ..] = self.marked;
         if fastest > 0.5 / self.interval {
@@ -113,7 +125,7 @@ impl Spectrum {
         let shaft = ("shaft", self.shaft);
         let [cage, outer, inner, ball] = self.marked;
         if let Some((name, line)) =
-            line_of(&[cage, outer, inner, ball, shaft], peak.frequency, self.spacing())
+            line_of(&[cage, outer, inner, ball, shaft], &self.meshes, peak.frequency, self.spacing())
         {
             write!(f, "; {name} {:+.2} Hz", peak.frequency - line)?;
         } else if let Some(own) = ring_of(&self.own, peak.frequency, self.spacing()) {
@@ -141,6 +153,7 @@ mod tests {
             shaft: 50.0,
             shaft_change: 0.0,
             own: vec![310.0],
+            meshes: vec![],
             marked: [("FTF", cage), ("BPFO", 9.0 * cage), ("BPFI", 14.0 * cage), ("BSF", 6.0 * cage)],
         }
     }
