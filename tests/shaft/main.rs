@@ -9,6 +9,7 @@ mod coupling;
 mod equilibrium;
 mod flange;
 mod frame;
+mod gear_hard;
 mod hard;
 mod housing;
 mod hub;
