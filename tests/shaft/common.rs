@@ -157,26 +157,20 @@ pub fn gear_pair(
     )
 }
 
-/// A row of rigid shafts on two 6205 each, whose gears of 30 teeth mesh, the first driven and the last braked by 20 N m; or the same shafts by themselves, each under the force of
-/// these teeth.
-pub fn train(shafts: usize, meshed: bool) -> String {
+/// A row of rigid shafts on two 6205 each, whose gears of 30 teeth mesh, the first driven and the last braked by 20 N m.
+pub fn train(shafts: usize) -> String {
     let mut text = String::new();
     for k in 0..shafts {
-        let (first, last) = (k == 0, k + 1 == shafts);
-        let speed = if k % 2 == 0 { "600 rpm" } else { "-600 rpm" };
-        let drive = match (meshed, first, last) {
-            (true, true, _) | (false, ..) => format!("speed = \"{speed}\""),
-            (true, _, true) => format!("torque = {}", if k % 2 == 0 { -20.0 } else { 20.0 }),
+        let brakes = if k % 2 == 0 { -20.0 } else { 20.0 };
+        let drive = match k {
+            0 => "speed = \"600 rpm\"".to_string(),
+            _ if k + 1 == shafts => format!("torque = {brakes}"),
             _ => String::new(),
         };
         text += &format!(
             "[[shaft]]\nname = \"s{k}\"\norigin = [0, 0, \"{} mm\"]\n{drive}\nmass = 1\npolar_inertia = 6e-4\ntransverse_inertia = 2e-3\n",
             60 * k
         );
-        if !meshed {
-            let force = if first || last { 667 } else { 1333 };
-            text += &format!("[[shaft.load]]\nname = \"teeth\"\nposition = 0\nforce = [0, {force}, 0]\n");
-        }
         for (side, at, way) in [("left", -40, "+x"), ("right", 40, "-x")] {
             text += &format!(
                 "[[bearing]]\nname = \"s{k}-{side}\"\nshaft = \"s{k}\"\ncatalogue = \"6205\"\n\
@@ -184,7 +178,7 @@ pub fn train(shafts: usize, meshed: bool) -> String {
                  [bearing.set]\neffects = {{ creep = \"saturated\", heathcote_slip = false }}\n"
             );
         }
-        if meshed && !first {
+        if k > 0 {
             text += &format!(
                 "[[mesh]]\nname = \"m{k}\"\nnormal_module = \"2 mm\"\ngears = [\n\
                  {{ shaft = \"s{}\", position = 0, teeth = 30, face_width = \"20 mm\" }},\n\

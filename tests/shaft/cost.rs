@@ -6,7 +6,7 @@ use std::path::Path;
 use roulement::simulation::system::System;
 
 use crate::caged::caged;
-use crate::common::system;
+use crate::common::{system, train};
 
 /// [-] price of a contact with derivatives over one without (docs/decisions/kept-matrices.md).
 const TANGENT: f64 = 5.0;
@@ -116,4 +116,32 @@ fn regression_instructions_of_recorded_machines_grow_with_their_bearings() {
         compared += 1;
     }
     assert_eq!(compared, 4);
+}
+
+#[test]
+fn invariant_bearings_of_a_train_of_nine_meshes_take_hardly_more_work_each_than_of_one() {
+    let [one, nine] = [2, 10].map(|shafts| work(&train(shafts)));
+    println!("{one:.1} contacts a step and bearing with one mesh, {nine:.1} with nine");
+    // A second correction is asked for by the worst of all: of 20 bearings a tenth more often than of 4.
+    assert!(nine < 1.2 * one, "{one} {nine}");
+}
+
+#[test]
+fn regression_instructions_of_recorded_trains_grow_with_their_meshes() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/mesh-cost.csv");
+    let record = fs::read_to_string(path).unwrap();
+    let rows: Vec<Vec<f64>> = record
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|number| number.parse().unwrap()).collect())
+        .collect();
+    let [four, ten, twenty] = &rows[..] else { panic!("{record}") };
+    assert_eq!([four, ten, twenty].map(|row| row[1]), [4.0, 10.0, 20.0]);
+    // Of shafts by themselves, and of trains: from ten bearings on each takes as much. Of four each takes less.
+    for column in [2, 3] {
+        let [few, some, many] = [four, ten, twenty].map(|row| row[column] / row[1]);
+        assert!(many < 1.1 * some && many < 1.5 * few, "{few} {some} {many}");
+    }
+    let [few, many] = [four, twenty].map(|row| (row[3] - row[2]) / row[0]);
+    assert!(many < 2.0 * few, "{few} {many} thousand instructions a mesh");
 }

@@ -247,7 +247,7 @@ fn hard_case_twenty_bearings_and_nine_meshes_pass_on_their_torque() {
     let forces = |machine: &System| {
         machine.outputs().links.iter().map(|link| link.teeth.normal_force.abs()).collect::<Vec<_>>()
     };
-    let rows = gates(&train(10, true), 1e-3, 50, forces);
+    let rows = gates(&train(10), 1e-3, 50, forces);
     let expected = 20.0 / (0.03 * 20f64.to_radians().cos());
     for mesh in 0..9 {
         let mean = rows[25..].iter().map(|row| row[mesh]).sum::<f64>() / 25.0;

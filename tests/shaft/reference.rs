@@ -116,6 +116,19 @@ fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
         table.push('\n');
     }
     compare_part("costs", &table, "scripts/shaft-cost");
+    let record =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/mesh-cost.csv")).unwrap();
+    let mut table = String::from(
+        "| meshes | bearings | a step without meshes | a step with them | of it a bearing | a mesh |\n|---|---|---|---|---|---|\n",
+    );
+    for line in record.lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|number| number.parse().unwrap()).collect();
+        let [meshes, bearings, apart, meshed] = row[..] else { panic!("{line}") };
+        let [of_bearing, of_mesh] = [apart / bearings, (meshed - apart) / meshes];
+        writeln!(table, "| {meshes} | {bearings} | {apart} | {meshed} | {of_bearing:.0} | {of_mesh:.0} |")
+            .unwrap();
+    }
+    compare_part("mesh costs", &table, "scripts/mesh-cost");
 }
 
 #[test]
