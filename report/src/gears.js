@@ -8,12 +8,15 @@ const SIDE = 66, MOST = 430;
 /** [-] of the transverse module: tips and roots beyond the pitch circle, and half widths of a tooth there, over the pitch. */
 const TIP = 1, ROOT = -1.25, TIP_HALF = 0.13, ROOT_HALF = 0.36;
 
+/** [m] Are two lengths the same but for rounding? */
+const near = (one, other) => Math.abs(one - other) < 1e-7;
+
 /** Gears with teeth on the axes of shafts: one of all that are the same, each with the mesh that it is named by. */
 function gearsOf(shafts) {
   const list = [];
   for (const { axis, gears, name } of shafts) {
     for (const gear of gears.filter(own => own.mesh)) {
-      const same = list.find(other => other.shaft === name && other.teeth === gear.teeth && other.position === gear.position && other.radius === gear.pitch_radius);
+      const same = list.find(other => other.shaft === name && other.teeth === gear.teeth && near(other.position, gear.position) && near(other.radius, gear.pitch_radius));
       if (same) same.meshes.push(gear);
       else list.push({ shaft: name, at: axis, teeth: gear.teeth, position: gear.position, radius: gear.pitch_radius, meshes: [gear] });
     }
@@ -80,7 +83,13 @@ export function meshesFigure(run, shafts, width) {
     out.push(s('g', { class: 'gear-seen', transform: `translate(${n(Y(y))} ${n(Z(z))})` }, s('title', {}, `${meshes.map(({ mesh }) => mesh).join(', ')}: ${teeth} teeth on ${shaft}`), body, s('circle', { r: n(radius * scale), class: 'axis pitch' })));
   }
   for (const [{ gear: { at: [y, z], radius }, azimuth }] of pairs) out.push(s('circle', { cx: n(Y(y + radius * Math.cos(azimuth))), cy: n(Z(z + radius * Math.sin(azimuth))), r: 4, class: 'contact outer' }));
-  for (const { name, axis: [y, z] } of shafts) out.push(s('circle', { cx: n(Y(y)), cy: n(Z(z)), r: 3, class: 'place' }), s('text', { x: n(Y(y) + 6), y: n(Z(z) - 6), class: 'tick place-name' }, name));
+  // Shafts on one axis have one place.
+  const axes = [];
+  for (const { name, axis } of shafts) {
+    const same = axes.find(other => near(other.axis[0], axis[0]) && near(other.axis[1], axis[1]));
+    if (same) same.names.push(name); else axes.push({ axis, names: [name] });
+  }
+  for (const { axis: [y, z], names } of axes) out.push(s('circle', { cx: n(Y(y)), cy: n(Z(z)), r: 3, class: 'place' }), s('text', { x: n(Y(y) + 6), y: n(Z(z) - 6), class: 'tick place-name' }, names.join(', ')));
   out.push(...arrowTo([14, height - 14], [14, height - 50], 'z'), ...arrowTo([14, height - 14], [42, height - 14], 'y'));
   clock.follow(({ time }) => {
     for (const { gear, body } of turning) {

@@ -90,7 +90,7 @@ fn gears(scene: &SystemScene, index: usize) -> Vec<Value> {
         let arm = mesh.place(scene) - axis;
         json!({
             "position": shaft.place(gear.position.0)[0],
-            "pitch_radius": pair.pitch_radii()[end],
+            "pitch_radius": pair.pitch_radii()[end].abs(),
             "azimuth": arm.z.atan2(arm.y),
             "helix_angle": if end == 0 { pair.helix_angle } else { -pair.helix_angle },
             "teeth": gear.teeth,

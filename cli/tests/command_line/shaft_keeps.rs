@@ -314,3 +314,23 @@ fn closed_form_a_mesh_has_its_forces_and_its_place_in_what_a_run_leaves() {
     }
     assert_eq!(record["shaft"]["meshes"], serde_json::json!(["gears"]));
 }
+
+/// A ring around its pinion: the page drew it with a radius below 0, which is none.
+#[test]
+fn regression_a_ring_has_a_radius_on_the_page() {
+    let scratch = Scratch::new("shaft-ring");
+    let text = meshed()
+        .replace("\"60 mm\"]", "\"40 mm\"]")
+        .replace("teeth = 40", "teeth = 60, inside = true")
+        .replace("\"2 ms\"", "\"0.1 ms\"");
+    let (code, said, told) = run(&scratch, &text, "out", &[]);
+    assert_eq!(code, Some(0), "{said}{told}");
+    let record: Value = serde_json::from_str(&scratch.read("out/run.json")).unwrap();
+    // Both touch at -z of their axes.
+    for (shaft, radius) in [(0, 0.02), (1, 0.06)] {
+        let gear = &record["shaft"]["shafts"][shaft]["gears"][0];
+        let [found, azimuth] = ["pitch_radius", "azimuth"].map(|key| gear[key].as_f64().unwrap());
+        assert!((found - radius).abs() < 1e-9, "{gear}");
+        assert!((azimuth + 0.5 * std::f64::consts::PI).abs() < 1e-9, "{gear}");
+    }
+}
