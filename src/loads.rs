@@ -40,7 +40,7 @@ pub struct Mesh {
     pub pitch_radius: f64,
     /// \[rad] pressure angle in the normal section.
     pub pressure_angle: f64,
-    /// \[rad] helix angle; positive is left-hand, where a torque about +x comes with a force along +x. 0 is a spur gear.
+    /// \[rad] helix angle, positive for right-hand teeth (ISO 21771), where a torque about +x comes with a force along -x. 0 is a spur gear.
     pub helix_angle: f64,
     /// \[rad] azimuth of the pitch point.
     pub position: f64,
@@ -50,11 +50,11 @@ pub struct Mesh {
 
 impl Mesh {
     /// Components \[N] of the force of a torque [N m] that the mesh exerts on the shaft about +x: along growing azimuth `T/r`,
-    /// away from the axis `-|T|/r tan(alpha)/cos(beta)`, and along x `T/r tan(beta)`.
+    /// away from the axis `-|T|/r tan(alpha)/cos(beta)`, and along x `-T/r tan(beta)`.
     pub fn components(&self, torque: f64) -> [f64; 3] {
         let tangential = torque / self.pitch_radius;
         let radial = -tangential.abs() * self.pressure_angle.tan() / self.helix_angle.cos();
-        [tangential, radial, tangential * self.helix_angle.tan()]
+        [tangential, radial, -tangential * self.helix_angle.tan()]
     }
 
     /// Wrench of such a torque [N m], its own moment about x among it.

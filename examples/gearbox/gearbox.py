@@ -20,7 +20,7 @@ PRELOAD = 1500.0  # axial force of one bearing on the other [N]
 SPEED = 6000 * np.pi / 30  # [rad/s]
 MASS, POLAR, TRANSVERSE = 1.8, 6e-4, 4e-3  # of shaft and pinion [kg, kg m2, kg m2]
 WEIGHT = 9.81 * MASS  # along -z [N]
-TEETH, PITCH_RADIUS, PRESSURE, HELIX = 23, 0.0238, np.radians(20), np.radians(15)
+TEETH, PITCH_RADIUS, PRESSURE, HELIX = 23, 0.0238, np.radians(20), np.radians(-15)
 PINION = -0.01  # its middle along the shaft [m]; the pitch point is at y = PITCH_RADIUS
 TORQUE, RIPPLE = 30.0, 0.1  # [N m], and the part of it that swings at mesh frequency
 STEP, ROWS = 2e-5, 2  # communication step [s], and steps of a row
@@ -32,7 +32,7 @@ OIL = {"friction.ball_race": 0.2, "film.iso_vg": 68, "film.temperature": "70 deg
 def mesh(torque):
     """Wrench of the mesh on the shaft about its middle [N, N m]: forces at the pitch point, moments about y and z."""
     tangential = torque / PITCH_RADIUS
-    force = tangential * np.array([np.tan(HELIX), -np.tan(PRESSURE) / np.cos(HELIX), 1.0])
+    force = tangential * np.array([-np.tan(HELIX), -np.tan(PRESSURE) / np.cos(HELIX), 1.0])
     return np.array([*force, *np.cross([PINION, PITCH_RADIUS, 0.0], force)[1:]])
 
 

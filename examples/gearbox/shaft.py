@@ -31,7 +31,7 @@ PARAMETERS = {
     "mesh.teeth": ("1", 23.0, "number of teeth"),
     "mesh.pitch_radius": ("m", 0.0238, "pitch radius"),
     "mesh.pressure_angle": ("rad", math.radians(20), "pressure angle, normal"),
-    "mesh.helix_angle": ("rad", math.radians(15), "helix angle"),
+    "mesh.helix_angle": ("rad", math.radians(-15), "helix angle, positive for right-hand teeth"),
 } | {f"{seat}.{key}": value for seat, at in zip(SEATS, (-0.05, 0.05)) for key, value in {
     "along": ("m", at, "middle of the bearing along the shaft"),
     "offset": ("m", 0.0, "position.x of the race at the start, when the shaft is at 0")}.items()}
@@ -105,7 +105,7 @@ class Shaft(Fmi2Slave):
         on = 0.5 - 0.5 * math.cos(math.pi * min(time / of("rise"), 1.0))
         tangential = of("torque") / of("pitch_radius") * on * (1 + of("ripple") * math.sin(of("teeth") * self.set["speed"] * time))
         helix, radius, position = of("helix_angle"), of("pitch_radius"), of("position")
-        x, y, z = tangential * math.tan(helix), -tangential * math.tan(of("pressure_angle")) / math.cos(helix), tangential
+        x, y, z = -tangential * math.tan(helix), -tangential * math.tan(of("pressure_angle")) / math.cos(helix), tangential
         return [x, y, z - self.set["mass"] * self.set["gravity"], -position * z, position * y - radius * x]
 
     def do_step(self, current_time, step_size):

@@ -1,4 +1,4 @@
-//! What keys usually have: numbers without a unit that are right in SI alone, and were perhaps meant in another unit.
+//! What keys usually have: numbers without a unit that are right in SI alone, and were perhaps meant in another unit; and numbers whose sign was another one.
 
 use toml::{Table, Value};
 
@@ -42,13 +42,33 @@ const KINDS: [Kind; 11] = [
 /// Sections whose numbers are no quantities of the scene, or those of a gas; and what a machine gives the scenes of its bearings.
 const APART: [&str; 4] = ["set", "ranges", "ambient", "scene.load"];
 
-/// Notes on numbers without unit beyond what is usual, a sentence each.
+/// Notes on numbers without unit beyond what is usual, and on those whose meaning has changed, a sentence each.
 pub fn unusual(text: &str) -> Vec<String> {
     let mut notes = vec![];
     if let Ok(table) = text.parse::<Table>() {
         tables(&table, "", &mut notes);
+        for section in ["load", "shaft"] {
+            gears(table.get(section), section, &mut notes);
+        }
     }
     notes
+}
+
+/// Gears whose helix angle had the other sign up to version 0.1.
+fn gears(section: Option<&Value>, key: &str, notes: &mut Vec<String>) {
+    match section {
+        Some(Value::Array(shafts)) => shafts.iter().for_each(|shaft| gears(Some(shaft), key, notes)),
+        Some(Value::Table(keys)) => {
+            let all = keys.get("gear").and_then(Value::as_array).into_iter().flatten();
+            notes.extend(all.filter_map(|gear| gear.get("helix_angle")).map(|angle| {
+                format!(
+                    "note: {key}.gear.helix_angle = {angle}: positive for right-hand teeth, as of a [[mesh]] (ISO 21771); files of version 0.1, where \
+                     left-hand ones were positive, need the other sign"
+                )
+            }));
+        }
+        _ => {}
+    }
 }
 
 fn tables(table: &Table, before: &str, notes: &mut Vec<String>) {
@@ -138,6 +158,20 @@ mod tests {
             let notes = unusual(text);
             assert_eq!(notes.len(), 1, "{text}: {notes:?}");
             words.iter().for_each(|word| assert!(notes[0].contains(word), "{word}: {notes:?}"));
+        }
+        // Gears in a file of an earlier version had the other sign.
+        for text in [
+            "[[load.gear]]\ntorque = 1\nhelix_angle = \"15 deg\"",
+            "[shaft]\n[[shaft.gear]]\nhelix_angle = 0.2",
+            "[[shaft]]\n[[shaft.gear]]\nhelix_angle = 0.2\n[[shaft]]",
+        ] {
+            let notes = unusual(text);
+            assert!(
+                notes.len() == 1
+                    && notes[0].contains("gear.helix_angle = ")
+                    && notes[0].contains("need the other sign"),
+                "{notes:?}"
+            );
         }
         // What has a unit is meant, and what is usual has no note.
         for text in [

@@ -57,7 +57,7 @@ pub struct GearSection {
     pub pitch_radius: Length,
     /// \[rad] pressure angle in the normal section.
     pub pressure_angle: Angle,
-    /// \[rad] helix angle; positive is left-hand: a torque about +x then comes with a force along +x.
+    /// \[rad] helix angle, positive for right-hand teeth as in a mesh (ISO 21771): a torque on the shaft about +x then comes with a force along -x.
     #[serde(default = "no_angle")]
     pub helix_angle: Angle,
     /// \[rad] azimuth of the pitch point, from +y towards +z.

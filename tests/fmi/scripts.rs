@@ -153,7 +153,7 @@ const BLOCKS: [(&str, &str); 9] = [
     ("outer.misalignment.ry", "{ ramp = [0, 1e-4], to = 0.001 }"),
     (
         "load.gear",
-        "[{ torque = { ramp = [1, 3], to = 0.001 }, pitch_radius = 0.0238, pressure_angle = 0.35, helix_angle = 0.26, \
+        "[{ torque = { ramp = [1, 3], to = 0.001 }, pitch_radius = 0.0238, pressure_angle = 0.35, helix_angle = -0.26, \
          teeth = 23, ripple = 0.1, offset = 0.01 }]",
     ),
     ("load.rotating", "[{ unbalance = 1e-4, offset = -0.01 }]"),

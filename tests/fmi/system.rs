@@ -487,7 +487,7 @@ fn regression_the_text_in_a_package_stands_alone_and_gives_the_same_system() {
 
 /// A gear in place of the mesh, whose torque is an input.
 fn geared(torque: &str) -> String {
-    let gear = "[[shaft.gear]]\ntorque = TORQUE\npitch_radius = \"24 mm\"\npressure_angle = \"20 deg\"\nhelix_angle = \"15 deg\"\n\
+    let gear = "[[shaft.gear]]\ntorque = TORQUE\npitch_radius = \"24 mm\"\npressure_angle = \"20 deg\"\nhelix_angle = \"-15 deg\"\n\
                 offset = \"-10 mm\"\nposition = \"90 deg\"\n[[shaft.load]]\nname = \"fan-end\"";
     text(SPEED, CONSTANT, "")
         .replace("[[shaft.load]]\n        name = \"fan-end\"", &gear.replace("TORQUE", torque))

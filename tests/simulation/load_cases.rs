@@ -309,7 +309,7 @@ fn errors_of_measured_files_name_key_file_and_line() {
 const MESH: Mesh = Mesh {
     pitch_radius: 0.0238,
     pressure_angle: 20.0 * PI / 180.0,
-    helix_angle: 15.0 * PI / 180.0,
+    helix_angle: -15.0 * PI / 180.0,
     position: 0.0,
     offset: -0.01,
 };
@@ -370,7 +370,7 @@ const MACHINE: [(&str, &str); 3] = [
     ("load.y.force", "\"200 N\""),
     (
         "load.gear",
-        "[{ torque = \"5 N m\", pitch_radius = \"23.8 mm\", pressure_angle = \"20 deg\", helix_angle = \"15 deg\", \
+        "[{ torque = \"5 N m\", pitch_radius = \"23.8 mm\", pressure_angle = \"20 deg\", helix_angle = \"-15 deg\", \
          offset = \"-10 mm\", position = \"30 deg\", teeth = 23, ripple = 0.1, phase = 0.5 }]",
     ),
     (
