@@ -73,9 +73,10 @@ fn effects_are_measured_by_runs_whatever_runs_at_a_time() {
     assert_eq!(of("damping")["standing"], "on");
     assert!(all.iter().any(|one| one["subject"] == "cage"));
     // Of several ways to take one in, each says which it is.
-    for (subject, ways) in
-        [("gravity", &["(-x)", "(-y)", "(-z)"][..]), ("waviness", &["(10 waves)", "(5 waves)"])]
-    {
+    for (subject, ways) in [
+        ("gravity", &["(-x)", "(-y)", "(-z)"][..]),
+        ("waviness", &["(a wave for each ball)", "(a wave for every other ball)"]),
+    ] {
         let lines = all.iter().filter(|one| one["subject"] == subject);
         let mut settings: Vec<&str> = lines.map(|one| one["setting"].as_str().unwrap()).collect();
         settings.sort_unstable_by_key(|setting| ways.iter().position(|way| setting.ends_with(way)));

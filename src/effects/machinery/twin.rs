@@ -18,7 +18,7 @@ pub struct Twin {
     /// Takes out what is in the scene or takes in what is not. There are several where data are not known: the largest change counts.
     pub switches: Vec<Switch>,
     /// Which of several each of these is, in a few words; none of a single one.
-    pub ways: Vec<String>,
+    pub ways: &'static [&'static str],
     /// Change that both twins have in common and the scene does not have.
     pub common: Option<Switch>,
     /// Are changes those of an instant alone, which a turn takes away from means: from torque and life?
@@ -50,7 +50,7 @@ impl Twin {
             on,
             setting: String::new(),
             switches: vec![Box::new(switch)],
-            ways: vec![],
+            ways: &[],
             common: None,
             passing: false,
             write: "",
@@ -76,8 +76,8 @@ impl Twin {
 
     /// With words for each of its switches.
     #[must_use]
-    pub fn named<const N: usize>(self, ways: [impl Into<String>; N]) -> Self {
-        Self { ways: ways.map(Into::into).into(), ..self }
+    pub fn named(self, ways: &'static [&'static str]) -> Self {
+        Self { ways, ..self }
     }
 
     /// With what to write in the scene.
