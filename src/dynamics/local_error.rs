@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use super::body::BodyTrial;
 use super::equations::BearingStep;
 use super::failure::Worst;
-use crate::contact::{REGULARISATION_SPEED, RaceMotion};
+use super::rest;
+use crate::contact::RaceMotion;
 use crate::model::Model;
 use crate::model::bodies::{Body, Race};
 use crate::model::state::{BodyState, State};
@@ -17,11 +18,6 @@ use crate::numerics::size::largest;
 const LOOSE: f64 = 2e3;
 /// [-] friction, which turns bodies, over loads: the order of friction coefficients. With 1 a cage in oil broke the promise.
 const FRICTION: f64 = 0.1;
-/// [-] local error that is allowed in a bearing whose races do not turn against each other, over that of one that runs. There friction does
-/// not sum up what a ball has missed of its way: loads alone feel it, at once. A ring that goes on ringing after a blow is wrong by 1.4 % of
-/// the largest load (0.4 % with 1); 50 makes it 3.5 %, more than is promised.
-const AT_REST: f64 = 10.0;
-
 /// A vector at start and end of a step.
 type Ends<'a> = (&'a Vector3<f64>, &'a Vector3<f64>);
 
@@ -77,21 +73,17 @@ impl BearingStep<'_> {
             let loads = (0..self.start.balls.len()).flat_map(load);
             solver.unresolved_share() * loads.fold(0.0, f64::max)
         });
-        let share = if self.stands() { AT_REST } else { 1.0 };
+        let share = if self.stands() { rest::LOCAL_ERROR } else { 1.0 };
         Allowed { length: share * solver.tolerance * 2.0 * self.model.bearing.ball.radius, unresolved }
     }
 
-    /// Where nothing is said about steps: do the races roll balls no faster than where creep laws are viscous, at both ends of the step?
+    /// Does the bearing stand at both ends of the step ([`rest::stands`])?
     fn stands(&self) -> bool {
-        let before = Race::BOTH.map(|race| self.before.race(race).rate.x);
         let end = Race::BOTH.map(|race| {
             let RaceMotion { axis, angular_velocity, .. } = &self.workspace.races[race];
             angular_velocity.dot(axis)
         });
-        let slow = |[inner, outer]: [f64; 2]| {
-            0.5 * (inner - outer).abs() * self.model.race_length() < REGULARISATION_SPEED
-        };
-        self.model.solver.unresolved > 0.0 && slow(before) && slow(end)
+        [rest::speeds(self.before), end].into_iter().all(|speeds| rest::stands(self.model, speeds))
     }
 
     /// Square of the local error of every ball over its tolerance; rotations count as displacements at its surface.

@@ -22,6 +22,7 @@ mod neighbours;
 mod reaction;
 mod record;
 mod repair;
+mod rest;
 mod spacing;
 mod stage_guess;
 mod stages;

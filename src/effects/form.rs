@@ -303,8 +303,9 @@ impl Effect for Settings {
                     FormSection { inner: Some(Shape::Waves(vec![wave])), ..FormSection::default() };
             }
         };
-        let twin =
-            Twin::new("form", "waviness", on, waved(estimate.balls)).or(waved((estimate.balls / 2).max(1)));
+        let twin = Twin::new("form", "waviness", on, waved(estimate.balls))
+            .or(waved((estimate.balls / 2).max(1)))
+            .named(&["a wave for each ball", "a wave for every other ball"]);
         let smooth: Switch = Box::new(|effects| effects.form.section = FormSection::default());
         vec![
             Twin { passing: true, common: Some(smooth), ..twin }

@@ -90,6 +90,7 @@ impl Effect for Settings {
                 Twin::new(KEY, "gravity", on, to(x))
                     .or(to(y))
                     .or(to(z))
+                    .named(&["-x", "-y", "-z"])
                     .taken_as("9.81 m/s2 along one of the axes")
             }
         };

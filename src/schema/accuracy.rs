@@ -35,7 +35,7 @@ pub enum Follows {
 pub struct Solver {
     /// Method of the time integration.
     pub method: Method,
-    /// [-] HHT damping, in (0, 1/3]; 0.05 is the paper's.
+    /// [-] HHT damping, in (0, 1/3]; 0.05 is the paper's. A bearing that stands, where nothing is said about steps, has 0.1 at least.
     pub alpha_f: f64,
     /// [-] local error of a step over the ball diameter.
     pub tolerance: f64,

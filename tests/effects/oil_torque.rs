@@ -133,8 +133,9 @@ const FURTHER: [Point; 20] = [
     (B7206, 0.0, 500.0, 10000.0, 15.0),
 ];
 
-/// [N mm] rolling and sliding moment of SKF's model, an oil bath, with a friction coefficient of boundary layers. Constants of the series of
-/// 6010 and 6308 as recalled.
+/// [N mm] rolling and sliding moment of SKF's model, an oil bath, with a friction coefficient of boundary layers. The formulas are those of pages
+/// 105 and 106 of the catalogue of 2016; the constants of the series 60, 62 and 63 are those that a program of others has, too, and those of
+/// angular contact are recalled.
 fn published(&(bearing, radial, axial, speed, viscosity): &Point, of_boundary: f64) -> [f64; 2] {
     let Bearing { angular, mean_diameter: mean, bore, outside, static_rating, .. } = bearing;
     let (of_rolling, [of_sliding, of_axial]) = (bearing.rolling, bearing.sliding);

@@ -11,7 +11,7 @@ mod run;
 
 use std::sync::atomic::AtomicBool;
 
-use roulement::effects::cage::Guidance;
+use roulement::effects::cage::{Guidance, Settings};
 use roulement::model::Model;
 use roulement::scene::Level;
 use roulement::scene::machine::MachineScene;
@@ -91,10 +91,17 @@ pub fn pushed(
 
 /// Is there a cage, in motion?
 fn check(scene: &MachineScene) -> Result<(), String> {
-    if !scene.bearings().iter().any(|(_, own)| own.effects.cage.is_body()) {
-        return Err("there is no cage in this scene: write [effects] cage = true, and [cage] with mass, inertia, pocket_clearance and \
-                    guided_by (`roulement scene --keys cage` explains them)"
-            .into());
+    let bearings = scene.bearings();
+    let any = |is: fn(&Settings) -> bool| bearings.iter().any(|(_, own)| is(&own.effects.cage));
+    if !any(Settings::is_body) {
+        let what = match any(Settings::is_ideal) {
+            true => "the cage of this scene is ideal: without mass and play it has no motion of its own",
+            false => "there is no cage in this scene",
+        };
+        return Err(format!(
+            "{what}: write [effects] cage = true, and [cage] with mass, inertia, pocket_clearance and guided_by (`roulement scene --keys cage` \
+             explains them, `roulement bearing --cage estimated` has them of a catalogue bearing)"
+        ));
     }
     if scene.solver().level == Level::Equilibrium {
         return Err(

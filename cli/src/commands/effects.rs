@@ -12,6 +12,7 @@ use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement_cli::measure::{self, measure};
+use roulement_cli::modes::warnings;
 use roulement_cli::report::json;
 use roulement_cli::report::limits::Limits;
 use roulement_cli::report::shaft::unknown_to_rollers;
@@ -52,7 +53,9 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
                 true => format!("{:#}\n", json::effects(&scene, &verdicts)?),
                 false => to_text(&scene.title, UNDER_SCRIPTS, &scene, &verdicts),
             };
-            return Ok(say(&text)?);
+            say(&text)?;
+            tell_growing(&MachineScene::Bearing(scene));
+            return Ok(());
         }
         scene @ MachineScene::Shaft(_) => scene,
     };
@@ -89,7 +92,17 @@ fn measured(options: &Options) -> Result<(), Box<dyn Error>> {
             format!("{}\n{heading}\n\n{}", scene.title(), measure::to_text(&measured))
         }
     };
-    Ok(say(&text)?)
+    say(&text)?;
+    tell_growing(&scene);
+    Ok(())
+}
+
+/// Says what grows, where something does: then changes are those of what a disturbance becomes, and not of what it is.
+fn tell_growing(scene: &MachineScene) {
+    let growing = warnings(scene, 0.0);
+    let what_then = "warning: what disturbs this scene, such as gravity or waves, starts that motion: settled states know nothing of it, and runs are of it";
+    let more = (!growing.is_empty()).then(|| what_then.to_string());
+    tell(growing.iter().map(|warning| format!("warning: {warning}")).chain(more));
 }
 
 /// States that estimates of a bearing alone are of.

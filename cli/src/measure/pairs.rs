@@ -70,7 +70,7 @@ impl Pairs {
             self.scenes.len() - 1
         };
         let common = twin.common.as_ref().map(|common| (common, add(&[common])));
-        for switch in &twin.switches {
+        for (index, switch) in twin.switches.iter().enumerate() {
             let (without, with) = match (common, twin.on) {
                 (Some((common, without)), _) => (without, add(&[common, switch])),
                 (None, true) => (add(&[switch]), 0),
@@ -78,16 +78,11 @@ impl Pairs {
             };
             let Twin { key, subject, on, ref setting, .. } = *twin;
             let name = name.to_string();
-            self.pairs.push(Pair {
-                bearing,
-                name,
-                key,
-                subject,
-                on,
-                setting: setting.clone(),
-                without,
-                with,
-            });
+            let setting = match twin.ways.get(index) {
+                Some(way) => format!("{setting} ({way})"),
+                None => setting.clone(),
+            };
+            self.pairs.push(Pair { bearing, name, key, subject, on, setting, without, with });
         }
     }
 }

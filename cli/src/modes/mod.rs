@@ -50,6 +50,8 @@ pub struct Found {
     pub motion: Motion,
     /// [1/s] half the range of its growth over these moments; none where it was not there at one of them.
     pub spread: Option<f64>,
+    /// Is it one of balls that ideal cages of the scene hold, as they do in a run? Others are of balls that are free.
+    pub held: bool,
 }
 
 impl Found {
@@ -79,6 +81,8 @@ pub struct Modes {
     pub title: String,
     /// Are balls free that ideal cages of the scene keep apart?
     pub freed: bool,
+    /// What grows at the speed of the scene where these cages hold them.
+    pub held: Vec<Found>,
     /// At the speed of the scene.
     pub own: Row,
     /// At other speeds, by growing speed; none where nothing turns.
@@ -108,6 +112,7 @@ impl Modes {
     pub fn of(scene: &MachineScene, asked: &Asked) -> Result<Self, MachineError> {
         let free = in_pockets_with_play(scene);
         let freed = free.is_some();
+        let held = if freed { growing_in_ideal_cages(scene, asked) } else { vec![] };
         let scene = free.as_ref().unwrap_or(scene);
         let own = speed_of(scene, asked.time);
         let (after, motions) = at(scene, asked)?;
@@ -127,15 +132,15 @@ impl Modes {
             MachineScene::Bearing(scene) => scene.title.clone(),
             MachineScene::Shaft(scene) => scene.title.clone(),
         };
-        Ok(Self { title, freed, own: Row { speed: own, after, motions }, rows, lines })
+        Ok(Self { title, freed, held, own: Row { speed: own, after, motions }, rows, lines })
     }
 }
 
 /// \[s] how long a machine runs before it is judged, at most, and which part of its run.
 const JUDGED_AFTER: (f64, f64) = (2e-3, 0.2);
 
-/// Motions where the script of a scene is at a time \[s], the one that grows fastest first, of balls that are free in their pockets. None of a
-/// machine that cannot run, whose motions cannot be found, or whose level has none.
+/// Motions where the script of a scene is at a time \[s], the one that grows fastest first: of balls that are free in their pockets, and those
+/// that grow where ideal cages of the scene hold the balls. None of a machine that cannot run, whose motions cannot be found, or whose level has none.
 pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
     let duration = match scene {
         MachineScene::Bearing(scene) => scene.load.duration.0,
@@ -145,35 +150,60 @@ pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
         return None;
     }
     let after = JUDGED_AFTER.0.min(JUDGED_AFTER.1 * duration);
-    let free = in_pockets_with_play(scene);
-    let found = at(free.as_ref().unwrap_or(scene), &Asked { time, after, up_to: None, speeds: 0 });
-    let mut motions = found.ok()?.1.ok()?;
+    let asked = Asked { time, after, up_to: None, speeds: 0 };
+    let of = |scene: &MachineScene| at(scene, &asked).ok()?.1.ok();
+    let mut motions = match in_pockets_with_play(scene) {
+        None => of(scene)?,
+        Some(free) => {
+            let mut motions = of(&free)?;
+            motions.extend(growing_in_ideal_cages(scene, &asked));
+            motions
+        }
+    };
     motions.sort_by(|a, b| b.motion.growth.total_cmp(&a.motion.growth));
     Some(motions)
 }
 
-/// Growth where the script of a scene is at a time \[s], in a sentence: what whoever runs this machine should know. Nothing is said of a
+/// Motions that grow where ideal cages of a scene hold the balls. None of a machine that cannot run.
+fn growing_in_ideal_cages(scene: &MachineScene, asked: &Asked) -> Vec<Found> {
+    let held = at(scene, asked).ok().and_then(|(_, motions)| motions.ok()).unwrap_or_default();
+    held.into_iter().filter(Found::grows).map(|found| Found { held: true, ..found }).collect()
+}
+
+/// Growth where the script of a scene is at a time \[s], in sentences: what whoever runs this machine should know. Nothing is said of a
 /// machine that cannot run.
 pub fn warnings(scene: &MachineScene, time: f64) -> Vec<String> {
     told(&judged(scene, time).unwrap_or_default(), scene)
 }
 
-/// Growth among the motions of a scene, the one that grows fastest first, in a sentence.
+/// Growth among the motions of a scene, the one that grows fastest first, in sentences: of balls that are free, and of those that ideal cages
+/// hold.
 pub fn told(motions: &[Found], scene: &MachineScene) -> Vec<String> {
-    let freed = match has_ideal_cage(scene) {
-        true => ", with balls that are free in their pockets (the scene's ideal cage damps it)",
+    let [free, held] = [false, true]
+        .map(|held| motions.iter().filter(|found| found.held == held && found.grows()).collect::<Vec<_>>());
+    let sentence = |growing: &[&Found], more: &str| {
+        let rest = growing.len().saturating_sub(1);
+        let others = if rest > 0 { format!(" (and {rest} more)") } else { String::new() };
+        let of = |Found { motion: Motion { frequency, growth, shape, .. }, .. }: &&Found| {
+            format!("a motion grows: {shape}, {frequency:.2} Hz, by {growth:.1} 1/s{others}{more}")
+        };
+        growing.first().map(of)
+    };
+    let freed = match (has_ideal_cage(scene), held.is_empty()) {
+        (false, _) => "",
+        (true, true) => ", with balls that are free in their pockets (the scene's ideal cage damps it)",
+        (true, false) => ", with balls that are free in their pockets",
+    };
+    let stops = "; `roulement modes` tells more, docs/holding-a-bearing.md what stops it";
+    let alone = match free.is_empty() {
+        true => ", and none does with balls that are free in their pockets: effects.cage = \"none\" has them",
         false => "",
     };
-    let growing: Vec<&Found> = motions.iter().filter(|found| found.grows()).collect();
-    let rest = growing.len().saturating_sub(1);
-    let others = if rest > 0 { format!(" (and {rest} more)") } else { String::new() };
-    let sentence = |Found { motion: Motion { frequency, growth, shape, .. }, .. }: &&Found| {
-        format!(
-            "a motion grows: {shape}, {frequency:.2} Hz, by {growth:.1} 1/s{others}{freed}; `roulement modes` tells more, docs/holding-a-bearing.md \
-             what stops it"
-        )
-    };
-    growing.first().map(sentence).into_iter().collect()
+    let by_cage = ", as the scene's ideal cage holds the balls where they would go along with a ring";
+    [sentence(&free, &format!("{freed}{stops}")), sentence(&held, &format!("{by_cage}{alone}"))]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Motions of a scene that has run for a while, and for how long \[s] before they were looked at first.
@@ -236,7 +266,7 @@ fn joined(moments: &[Vec<Motion>]) -> Vec<Found> {
             });
         let growth = growths.iter().sum::<f64>() / growths.len().max(1) as f64;
         let spread = (growths.len() == moments.len()).then_some(0.5 * (most - least));
-        Found { motion: Motion { growth, ..motion.clone() }, spread }
+        Found { motion: Motion { growth, ..motion.clone() }, spread, held: false }
     };
     moments[moments.len() / 2].iter().map(join).collect()
 }

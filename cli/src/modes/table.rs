@@ -35,8 +35,15 @@ fn write(out: &mut String, modes: &Modes) -> std::fmt::Result {
     if modes.freed {
         writeln!(
             out,
-            "balls are free here, as in pockets with play: the scene's ideal cage would hold them, and damp what a ring does by micrometres"
+            "balls are free here, as in pockets with play: the scene's ideal cage holds them, and changes what a ring does by micrometres"
         )?;
+        for Found { motion, .. } in &modes.held {
+            writeln!(
+                out,
+                "with balls held by that cage, as in a run: {:.2} Hz {:.2} 1/s GROWS: {}",
+                motion.frequency, motion.growth, motion.shape
+            )?;
+        }
     }
     writeln!(
         out,
@@ -117,19 +124,19 @@ fn write_meetings(out: &mut String, met: &[Meeting]) -> std::fmt::Result {
 
 /// As JSON.
 pub fn to_json(modes: &Modes) -> Value {
+    let motion = |found: &Found| {
+        let motion = &found.motion;
+        json!({
+            "frequency": motion.frequency,
+            "growth": motion.growth,
+            "growth_spread": found.spread,
+            "damping": motion.damping(),
+            "balls": motion.balls,
+            "grows": found.grows(),
+            "shape": motion.shape,
+        })
+    };
     let row = |Row { speed, after, motions }: &Row| {
-        let motion = |found: &Found| {
-            let motion = &found.motion;
-            json!({
-                "frequency": motion.frequency,
-                "growth": motion.growth,
-                "growth_spread": found.spread,
-                "damping": motion.damping(),
-                "balls": motion.balls,
-                "grows": found.grows(),
-                "shape": motion.shape,
-            })
-        };
         json!({
             "speed": speed,
             "after": after,
@@ -140,6 +147,7 @@ pub fn to_json(modes: &Modes) -> Value {
     json!({
         "title": modes.title,
         "balls_freed": modes.freed,
+        "growing_in_ideal_cage": modes.held.iter().map(motion).collect::<Vec<_>>(),
         "own": row(&modes.own),
         "speeds": modes.rows.iter().map(row).collect::<Vec<_>>(),
         "lines": modes.lines.iter().map(|line| json!({ "name": line.name, "per_turn": line.per_turn })).collect::<Vec<_>>(),

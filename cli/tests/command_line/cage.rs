@@ -102,6 +102,12 @@ fn without_a_cage_or_a_motion_there_is_nothing_to_push() {
         "{why}"
     );
     let scratch = Scratch::new("cage-level");
+    // One that has no motion of its own is told apart from none.
+    std::fs::write(scratch.path("ideal.toml"), edited("thrust", &[("effects.cage", "\"ideal\"")]).source)
+        .unwrap();
+    let said = roulement(&["cage", &scratch.path("ideal.toml")]);
+    let why = String::from_utf8(said.stderr).unwrap();
+    assert!(!said.status.success() && why.contains("the cage of this scene is ideal"), "{why}");
     let path = symmetric(&scratch, &[("[solver]\n", "[solver]\nlevel = \"equilibrium\"\n")]);
     let said = roulement(&["cage", &path]);
     let why = String::from_utf8(said.stderr).unwrap();

@@ -72,6 +72,17 @@ fn effects_are_measured_by_runs_whatever_runs_at_a_time() {
     }
     assert_eq!(of("damping")["standing"], "on");
     assert!(all.iter().any(|one| one["subject"] == "cage"));
+    // Of several ways to take one in, each says which it is.
+    for (subject, ways) in [
+        ("gravity", &["(-x)", "(-y)", "(-z)"][..]),
+        ("waviness", &["(a wave for each ball)", "(a wave for every other ball)"]),
+    ] {
+        let lines = all.iter().filter(|one| one["subject"] == subject);
+        let mut settings: Vec<&str> = lines.map(|one| one["setting"].as_str().unwrap()).collect();
+        settings.sort_unstable_by_key(|setting| ways.iter().position(|way| setting.ends_with(way)));
+        assert!(settings.iter().zip(ways).all(|(setting, way)| setting.ends_with(way)), "{settings:?}");
+        assert_eq!(settings.len(), ways.len(), "{subject}");
+    }
     let refused = roulement(&["effects", "--jobs", "2", &path]);
     assert!(!refused.status.success());
 }

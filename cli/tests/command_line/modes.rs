@@ -66,6 +66,58 @@ fn a_whirl_is_told_beside_an_ideal_cage_as_without() {
     assert!(!text.contains("balls are free here"), "{text}");
 }
 
+/// Contacts slip where balls cannot go along with a ring that shifts, and at high speed that drives it: this ring decays with free balls.
+#[test]
+fn a_whirl_that_an_ideal_cage_makes_is_told_with_what_is_without_it_and_is_that_of_the_run() {
+    let scratch = Scratch::new("modes-ideal-grows");
+    let designed = roulement(&["bearing", "7206B"]);
+    let text = String::from_utf8(designed.stdout).unwrap();
+    let edits = [
+        ("load.inner_speed", "\"15000 rpm\""),
+        ("load.x.force", "2100"),
+        ("effects.gravity", "[0, -9.81, 0]"),
+        ("load.duration", "\"8 ms\""),
+        ("solver.tolerance", "1e-9"),
+    ];
+    let at = |cage: &str| {
+        let cage = format!("\"{cage}\"");
+        let edits = edits.iter().copied().chain([("effects.cage", &*cage)]);
+        let edited = roulement::Scene::edited(&text, edits).unwrap();
+        std::fs::write(scratch.path("scene.toml"), edited.source).unwrap();
+        let found = json(&["modes", &scratch.path("scene.toml"), "--speeds", "0", "--json"]);
+        assert_eq!(growing(&found), [], "with free balls");
+        let output = roulement(&["run", &scratch.path("scene.toml"), "-o", &scratch.path(&cage[1..5])]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let columns = super::sweep::columns(&scratch.read(&format!("{}/results.csv", &cage[1..5])));
+        let [time, y, z] = ["time", "inner.position.y", "inner.position.z"].map(|name| {
+            let column = columns.iter().find(|(column, _)| column.split(' ').next() == Some(name));
+            super::sweep::numbers(column.unwrap().1)
+        });
+        let radius: Vec<f64> =
+            y.iter().zip(&z).map(|(to_y, to_z)| (to_y - y[0]).hypot(to_z - z[0])).collect();
+        (found["growing_in_ideal_cage"].clone(), String::from_utf8(output.stderr).unwrap(), time, radius)
+    };
+    let (growing, told, time, radius) = at("ideal");
+    let growth = growing[0]["growth"].as_f64().unwrap();
+    let words = "none does with balls that are free in their pockets: effects.cage = \"none\" has them";
+    assert!(told.contains("warning: a motion grows: inner ring") && told.contains(words), "{told}");
+    // From a twentieth of what balls are pressed in by to half of it.
+    let first = |above: f64| radius.iter().position(|radius| *radius > above).unwrap();
+    let (from, to) = (first(0.3e-6), first(3e-6));
+    let seen = (radius[to] / radius[from]).ln() / (time[to] - time[from]);
+    println!("{growth} in the eigenvalue, {seen} in the run");
+    assert!((growth / seen - 1.0).abs() < 0.15, "{growth} {seen}");
+    let (growing, told, _, radius) = at("none");
+    assert_eq!(growing.as_array().unwrap().len(), 0);
+    assert!(!told.contains("a motion grows"), "{told}");
+    assert!(radius.iter().all(|radius| *radius < 0.1e-6), "{radius:?}");
+    // Estimates say it, too: no settled state knows of a whirl.
+    let edited = roulement::Scene::edited(&text, edits).unwrap();
+    std::fs::write(scratch.path("scene.toml"), edited.source).unwrap();
+    let told = String::from_utf8(roulement(&["effects", &scratch.path("scene.toml")]).stderr).unwrap();
+    assert!(told.contains(words) && told.contains("settled states know nothing of it"), "{told}");
+}
+
 #[test]
 fn a_table_and_a_figure_over_the_speed_are_written() {
     let scratch = Scratch::new("modes-files");

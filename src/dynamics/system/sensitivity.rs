@@ -6,14 +6,13 @@
 //! the step itself. What is left is of second order, and even: it cancels between two perturbations of opposite sign.
 
 use super::border::Border;
-use super::step::{DEFAULT_ALPHA, Joined, StructureStep, SystemStep};
+use super::step::{Joined, StructureStep, SystemStep, scheme};
 use super::{BearingStep, finished};
 use crate::dynamics::accept::accept;
 use crate::dynamics::{Boundary, Workspace};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::model::structure::StructureState;
-use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::Equations;
 
 /// A bearing of a system at the start of a step, and what was imposed on it at its end.
@@ -52,7 +51,7 @@ pub fn advance_perturbed<'a>(
     for (own, bearing) in aside.iter_mut().zip(bearings) {
         own.list_those_of(bearing.accepted);
     }
-    let step = HhtStep::new(bearings.first().map_or(DEFAULT_ALPHA, |of| of.model.solver.alpha_f), h);
+    let step = scheme(bearings.iter().map(|of| (of.model, of.start)), h);
     let steps = bearings.iter().zip(aside.iter_mut());
     let steps: Vec<_> = steps
         .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, step, workspace))

@@ -13,10 +13,12 @@ use super::Part;
 use super::border::{Border, CarriedRace};
 use super::elements::{ElementStep, OnRaces, Seen};
 use super::structure::{Seat, StructureLoad, StructureTrial};
+use crate::dynamics::rest;
 use crate::dynamics::stages::{Stage, Stages};
+use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::model::link::{self, Link, LinkForce};
-use crate::model::state::KeptMatrix;
+use crate::model::state::{KeptMatrix, State};
 use crate::model::structure::{Structure, StructureState};
 use crate::numerics::esdirk;
 use crate::numerics::given::take_out;
@@ -25,7 +27,18 @@ use crate::numerics::newton::{Equations, NewtonFailure, REFACTOR_CONTRACTION};
 use crate::numerics::size::{larger, largest};
 
 /// [-] damping parameter of a system all of whose bearings are without states, where they do not say so.
-pub(super) const DEFAULT_ALPHA: f64 = 0.05;
+const DEFAULT_ALPHA: f64 = 0.05;
+
+/// The scheme of a step of `h` \[s] of bearings in these states: that of their scenes, with more damping where all of them stand.
+pub(super) fn scheme<'a>(bearings: impl Iterator<Item = (&'a Model, &'a State)> + Clone, h: f64) -> HhtStep {
+    let Some((first, _)) = bearings.clone().next() else {
+        return HhtStep::new(DEFAULT_ALPHA, h);
+    };
+    let own = first.solver.alpha_f;
+    let mut all = bearings;
+    let stand = all.all(|(model, state)| rest::stands(model, rest::speeds(state)));
+    HhtStep::new(if stand { own.max(rest::DAMPING) } else { own }, h)
+}
 
 /// A race of a bearing on a seat of a structure.
 #[derive(Clone, Debug)]
@@ -106,10 +119,9 @@ impl<'a> SystemStep<'a> {
         h: f64,
         border: &'a mut Border,
     ) -> Self {
-        let step = match (stage, parts.first()) {
-            (Some(_), _) => HhtStep::backward_euler(esdirk::DIAGONAL * h),
-            (None, Some(part)) => HhtStep::new(part.model.solver.alpha_f, h),
-            (None, None) => HhtStep::new(DEFAULT_ALPHA, h),
+        let step = match stage {
+            Some(_) => HhtStep::backward_euler(esdirk::DIAGONAL * h),
+            None => scheme(parts.iter().map(|part| (part.model, &*part.state)), h),
         };
         let of = |(index, part): (usize, &'a mut Part<'_>)| {
             let Part { model, state, boundary, workspace } = part;

@@ -17,6 +17,8 @@ pub struct Twin {
     pub setting: String,
     /// Takes out what is in the scene or takes in what is not. There are several where data are not known: the largest change counts.
     pub switches: Vec<Switch>,
+    /// Which of several each of these is, in a few words; none of a single one.
+    pub ways: &'static [&'static str],
     /// Change that both twins have in common and the scene does not have.
     pub common: Option<Switch>,
     /// Are changes those of an instant alone, which a turn takes away from means: from torque and life?
@@ -48,6 +50,7 @@ impl Twin {
             on,
             setting: String::new(),
             switches: vec![Box::new(switch)],
+            ways: &[],
             common: None,
             passing: false,
             write: "",
@@ -69,6 +72,12 @@ impl Twin {
     pub fn or(mut self, switch: impl Fn(&mut Effects) + 'static) -> Self {
         self.switches.push(Box::new(switch));
         self
+    }
+
+    /// With words for each of its switches.
+    #[must_use]
+    pub fn named(self, ways: &'static [&'static str]) -> Self {
+        Self { ways, ..self }
     }
 
     /// With what to write in the scene.
