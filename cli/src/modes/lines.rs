@@ -159,6 +159,7 @@ mod tests {
         let found = |frequency: f64, growth: f64| Found {
             motion: Motion { frequency, growth, balls: 0.0, rolled_over: 10.0, shape: "swings".into() },
             spread: Some(0.0),
+            held: false,
         };
         // One that softens by 1 Hz from row to row, one that is damped away, one out of reach.
         let row = |k: u32| Row {
