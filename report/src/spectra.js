@@ -21,6 +21,9 @@ export function spectra(run) {
   const lines = linesOf(run);
   const body = h('div', { class: 'plot-body', role: 'img', 'aria-label': 'Amplitude spectrum' });
   const [note, peaks, named] = [h('p', { class: 'note' }), h('div'), h('div')];
+  const order = frequency => (lines.shaft > 0 ? digits(frequency / lines.shaft, 4) : '\u2013');
+  const list = () => named.replaceChildren(table(['line', 'what', 'Hz', 'order'], (lines.groups[state.group]?.lines ?? []).map(line => [line.short, line.long, digits(line.frequency, 5), order(line.frequency)]), { numbers: [2, 3], caption: 'Lines in the plot' }));
+  list();
   let plot = null;
   const draw = () => {
     plot?.destroy();
@@ -47,10 +50,8 @@ export function spectra(run) {
     }, [x, Float64Array.from(y, v => (state.scale === 'log' ? Math.max(v, top * 1e-9, NOTHING) : v))], body);
     const stride = series.t.length < (run.record.table_rows ?? 0);
     note.textContent = `Hann window over ${digits(values.length * dt * 1e3, 4)} ms, resolution ${digits(2 / (values.length * dt), 3)} Hz, up to ${digits(0.5e-3 / dt, 4)} kHz, half the frequency of the rows.${stride ? ' The page has every n-th row of the table: what is faster than that folds back.' : ' What is faster than that folds back.'}`;
-    const order = frequency => (lines.shaft > 0 ? digits(frequency / lines.shaft, 4) : '\u2013');
     const [found, resolution] = [largest(amplitudes, spacing), 2 / (values.length * dt)];
     peaks.replaceChildren(...(found.length ? [table(['peak', 'Hz', 'order', 'amplitude'], found.map(({ frequency, amplitude }) => [nameOf(lines, frequency, spacing, resolution) ?? '\u2013', digits(frequency, 5), order(frequency), `${digits(amplitude * factor, 4)}${unit ? ` ${unit}` : ''}`]), { numbers: [1, 2, 3], caption: 'Largest peaks, and the line that each is on' })] : []));
-    named.replaceChildren(table(['line', 'what', 'Hz', 'order'], (lines.groups[state.group]?.lines ?? []).map(line => [line.short, line.long, digits(line.frequency, 5), order(line.frequency)]), { numbers: [2, 3], caption: 'Lines in the plot' }));
   };
   onTheme(draw);
   let waiting = 0;
@@ -60,7 +61,7 @@ export function spectra(run) {
   return section('spectra', 'Spectra', h('div', { class: 'row' },
     select('Quantity', candidates.map(name => [name, name]), state.name, name => { state.name = name; draw(); }),
     lines.shaft > 0 ? choice('Axis', [['Hz', 'frequency'], ['order', 'order']], state.axis, axis => { state.axis = axis; draw(); }) : null,
-    lines.groups.length > 1 ? select('Lines', lines.groups.map(({ name }, i) => [i, name]), state.group, group => { state.group = Number(group); draw(); }) : null,
+    lines.groups.length > 1 ? select('Lines', lines.groups.map(({ name }, i) => [i, name]), state.group, group => { state.group = Number(group); list(); draw(); }) : null,
     choice('Scale', [['log', 'logarithmic'], ['linear', 'linear']], state.scale, scale => { state.scale = scale; draw(); })), body, note, peaks, named);
 }
 
