@@ -6,13 +6,15 @@
 mod fmi2_abi;
 
 use divan::{Bencher, counter::ItemsCount};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 use roulement::contact::many::ContactGroup;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::dynamics::{Boundary, make_consistent};
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::fmi::v2::Status;
 use roulement::model::bodies::{PerRace, Race};
+use roulement::model::link::roller::Profile;
+use roulement::model::link::rollers::{Geometry, Rollers, Taper};
 use roulement::model::{Conditions, Model};
 use roulement::numerics::lanes::WIDTH;
 use roulement::numerics::scalar::Dual;
@@ -161,6 +163,29 @@ fn equilibrium_solve(bencher: Bencher) {
     let model = Model::new(&scene).unwrap();
     let input = EquilibriumInput::from_scene(&scene, Gyroscopic::OuterRaceControl);
     bencher.bench_local(|| equilibrium::solve(&model, &input).unwrap().iterations);
+}
+
+/// Force of a bearing of 17 rollers that slowly turn: without ribs, between ribs under a thrust, and tapered.
+#[divan::bench(args = ["N", "NUP", "tapered"])]
+fn rollers(bencher: Bencher, kind: &str) {
+    let taper = Taper { contact_angle: 0.245, roller_angle: 0.07, direction: 1.0 };
+    let geometry = Geometry {
+        count: 17,
+        diameter: 7.2e-3,
+        length: 10e-3,
+        pitch_diameter: 46e-3,
+        diametral_clearance: if kind == "tapered" { 0.0 } else { 20e-6 },
+        profile: Profile::Logarithmic,
+        ribs: [kind == "NUP"; 2],
+        axial_clearance: 0.0,
+        rib_stiffness: None,
+        first_azimuth: 0.0,
+        taper: (kind == "tapered").then_some(taper),
+    };
+    let bearing = Rollers::new(geometry, None);
+    let displaced = Vector6::new(20e-6, 25e-6, 5e-6, 0.0, 2e-4, -1e-4);
+    let turning = Vector6::ith(3, 10.0);
+    bencher.bench_local(|| bearing.force(divan::black_box(&displaced), &turning));
 }
 
 /// 10 ms of the thrust case at a step cap of 1e-5 s: 1000 steps an iteration, so 1 ms here is 0.1 s per simulated s.

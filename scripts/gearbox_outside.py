@@ -7,7 +7,6 @@ Writes docs/figures/gearbox-outside.csv, and what docs/gearbox.md has of it betw
 grows by a tenth within 0.2 ms. Some minutes of CPU. Needs the program (ROULEMENT_BIN, or that of target/release) and FMPy.
 """
 
-import csv
 import json
 import math
 import os
@@ -19,10 +18,14 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+import rows_by_step
 from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "examples/gearbox"))
+import gearbox  # noqa: E402
+
 SCENE = ROOT / "examples/gearbox/three_stage.toml"
 RESULTS, DOCUMENT = ROOT / "docs/figures/gearbox-outside.csv", ROOT / "docs/gearbox.md"
 PROGRAM = os.environ.get("ROULEMENT_BIN", ROOT / "target/release/roulement")
@@ -289,17 +292,12 @@ def polar(folder, whole):
 
 
 def write(rows):
-    columns = ["way", "step [us]", "stable", "error [%]", "CPU over the package [-]"]
-    with open(RESULTS, "w", newline="") as file:
-        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    rows_by_step.write(RESULTS, ["way", "step [us]", "stable", "error [%]", "CPU over the package [-]"], rows)
 
 
 def read():
     """Results as written: rows by way and step [us]."""
-    with open(RESULTS, newline="") as file:
-        return {(row["way"], int(row["step [us]"])): row for row in csv.DictReader(file)}
+    return rows_by_step.read(RESULTS)
 
 
 def table(results):
@@ -315,17 +313,10 @@ def table(results):
     return "\n".join(lines)
 
 
-def put(text):
-    """Puts a table into the document between its marks."""
-    before, rest = DOCUMENT.read_text().split("<!-- begin outside of the gearbox -->")
-    _, after = rest.split("<!-- end -->", 1)
-    DOCUMENT.write_text(f"{before}<!-- begin outside of the gearbox -->\n\n{text}\n\n<!-- end -->{after}")
-
-
 if __name__ == "__main__":
     if sys.argv[1:] not in ([], ["--keep"]):
         sys.exit(__doc__)
     if not sys.argv[1:]:
         write(measure())
-    put(table(read()))
+    gearbox.put(DOCUMENT, "outside of the gearbox", table(read()))
     print(table(read()))

@@ -8,7 +8,6 @@ Writes docs/figures/inside-outside.csv and .svg, and what docs/coupling.md, docs
 (scripts/python-package), FMPy and matplotlib.
 """
 
-import csv
 import math
 import os
 import shutil
@@ -20,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import roulement
+import rows_by_step
 from roulement.coupling import Bearings, Euler, FmuBearing, Implicit, Leapfrog, gyroscopic, rigid
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -323,17 +323,12 @@ def measure():
 
 def write(rows):
     """Writes the results."""
-    columns = ["way", "step [us]", "stable", "speed at first [m/s]", "speed at last [m/s]", "error [%]", "CPU [s/s]"]
-    with open(RESULTS, "w", newline="") as file:
-        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    rows_by_step.write(RESULTS, ["way", "step [us]", "stable", "speed at first [m/s]", "speed at last [m/s]", "error [%]", "CPU [s/s]"], rows)
 
 
 def read():
     """Results as written: rows by way and step [us]."""
-    with open(RESULTS, newline="") as file:
-        return {(row["way"], int(row["step [us]"])): row for row in csv.DictReader(file)}
+    return rows_by_step.read(RESULTS)
 
 
 def served(results, way):

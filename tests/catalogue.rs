@@ -515,7 +515,8 @@ fn published_ratings_of_tapered_roller_bearings() {
             1e3 * of.diameter.0,
             1e3 * of.length.0
         );
-        assert!(errors.iter().all(|error| error.abs() < 0.1), "{name}: {errors:?}");
+        // What two shares for all sizes of a series leave, as docs/shaft.md has it.
+        assert!(errors.iter().all(|error| error.abs() < 0.09), "{name}: {errors:?}");
         assert!(angles(series).contains(&angle), "{name}: {angle}");
         // The apex of roller and races is one: at its distance the roller's radius is what its angle says.
         let half = 0.5 * of.roller_angle.unwrap().0;
@@ -555,7 +556,7 @@ fn closed_form_a_cage_with_needle_rollers_is_read_from_its_dimensions() {
         assert!((15..42).contains(&of.count) && of.length.0 < 25e-3, "{name}");
         assert!((of.diametral_clearance.unwrap().0 - 25e-6).abs() < 1e-12, "{name}");
     }
-    for wrong in ["K 58x50x25", "K 50x58x2", "K 50x58x25x3", "K 0x8x25"] {
+    for wrong in ["K 58x50x25", "K 50x58x2", "K 50x58x25x3", "K 0x8x25", "K 50x58x25 ZW-TV"] {
         assert!(rollers_of(wrong).unwrap().is_err(), "{wrong}");
     }
 }

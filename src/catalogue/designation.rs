@@ -19,7 +19,7 @@ pub(super) struct Named {
 }
 
 /// Makers, whose names stand before designations.
-pub(super) const MAKERS: [&str; 24] = [
+const MAKERS: [&str; 24] = [
     "SKF",
     "FAG",
     "INA",
@@ -219,13 +219,16 @@ fn parts_of(word: &str) -> (Vec<(&'static str, Part)>, &str) {
     }
 }
 
+/// Words of a designation in capitals, but for makers; what stands behind a slash is a word of its own.
+pub(super) fn words_of(upper: &str) -> Vec<&str> {
+    let words = upper.split(BETWEEN).flat_map(|word| word.split('/'));
+    words.filter(|word| !word.is_empty() && !MAKERS.contains(word)).collect()
+}
+
 /// Kind, number and clearance of a cylindrical roller bearing of one row; none where a name is of something else.
 pub(super) fn rollers(name: &str) -> Option<(String, String, Clearance)> {
     let upper = name.to_ascii_uppercase();
-    let mut words = upper
-        .split([' ', '-', '_', ',', '.', '+', '/'])
-        .filter(|word| !word.is_empty() && !MAKERS.contains(word))
-        .peekable();
+    let mut words = words_of(&upper).into_iter().peekable();
     let mut prefix = String::new();
     // The kind may stand apart, as in "NU 206".
     while words.peek()?.chars().all(|sign| sign.is_ascii_alphabetic()) {
@@ -246,9 +249,7 @@ pub(super) fn rollers(name: &str) -> Option<(String, String, Clearance)> {
 /// Series and code of the bore of a tapered roller bearing; nothing within where what follows them changes its contact angle. None where a name is of something else.
 pub(super) fn tapered(name: &str) -> Option<Option<String>> {
     let upper = name.to_ascii_uppercase();
-    let mut words = upper
-        .split([' ', '-', '_', ',', '.', '+', '/'])
-        .filter(|word| !word.is_empty() && !MAKERS.contains(word));
+    let mut words = words_of(&upper).into_iter();
     let Head { prefix, number, rest } = words.find_map(Head::of)?;
     // NSK has HR before all of them, SNR and NTN have E and 4T.
     let is_tapered = ["", "HR", "E", "T"].contains(&prefix.as_str())

@@ -60,7 +60,7 @@ fn gears(section: Option<&Value>, key: &str, notes: &mut Vec<String>) {
         Some(Value::Array(shafts)) => shafts.iter().for_each(|shaft| gears(Some(shaft), key, notes)),
         Some(Value::Table(keys)) => {
             let all = keys.get("gear").and_then(Value::as_array).into_iter().flatten();
-            notes.extend(all.filter_map(|gear| gear.get("helix_angle")).map(|angle| {
+            notes.extend(all.filter_map(|gear| gear.get("helix_angle")).filter(|angle| !is_zero(angle)).map(|angle| {
                 format!(
                     "note: {key}.gear.helix_angle = {angle}: positive for right-hand teeth, as of a [[mesh]] (ISO 21771); files of version 0.1, where \
                      left-hand ones were positive, need the other sign"
@@ -69,6 +69,13 @@ fn gears(section: Option<&Value>, key: &str, notes: &mut Vec<String>) {
         }
         _ => {}
     }
+}
+
+/// Is it 0, in whatever unit?
+fn is_zero(angle: &Value) -> bool {
+    let text = angle.to_string();
+    let number = text.trim_matches('"').split_whitespace().next().map(str::parse::<f64>);
+    matches!(number, Some(Ok(number)) if number == 0.0)
 }
 
 fn tables(table: &Table, before: &str, notes: &mut Vec<String>) {
@@ -179,6 +186,7 @@ mod tests {
             "[load]\ninner_speed = 628\ny = { force = 1500, displacement = 2e-5 }\nduration = 0.02\noutput_interval = 1e-5",
             "[film]\ntemperature = 80\nviscosity = 0.015",
             "title = 6000",
+            "[[load.gear]]\nhelix_angle = \"0 deg\"\n[[load.gear]]\nhelix_angle = 0",
         ] {
             assert_eq!(unusual(text), Vec::<String>::new(), "{text}");
         }

@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use crate::catalogue::designation::MAKERS;
+use crate::catalogue::designation::words_of;
 
 /// [-] part of the circle of their centres that rollers fill: bars of the cage are about as wide as rollers. Spread 15 %.
 const FILL: f64 = 0.55;
@@ -22,8 +22,7 @@ const ROLLERS: std::ops::RangeInclusive<f64> = 0.02..=0.5;
 /// What it is, if its dimensions are those of no such cage.
 pub(super) fn find(designation: &str) -> Option<Result<String, &'static str>> {
     let upper = designation.to_ascii_uppercase().replace('\u{d7}', "X");
-    let mut words =
-        upper.split([' ', '-', '_', '/']).filter(|word| !word.is_empty() && !MAKERS.contains(word));
+    let mut words = words_of(&upper).into_iter();
     let first = words.next()?;
     let dimensions = match first.strip_prefix('K')? {
         "" => words.next()?,
@@ -35,6 +34,9 @@ pub(super) fn find(designation: &str) -> Option<Result<String, &'static str>> {
         return None;
     };
     let (diameter, pitch) = (0.5 * (outside - shaft), 0.5 * (outside + shaft));
+    if words.any(|word| word.starts_with("ZW")) {
+        return Some(Err("a cage with needle rollers in two rows"));
+    }
     let fits = numbers.next().is_none()
         && SHAFTS.contains(&shaft)
         && ROLLERS.contains(&(diameter / shaft))
