@@ -1,4 +1,4 @@
-// Gears in mesh on the axes of all shafts, seen from +x: their teeth turn with the time of the page.
+// Gears in mesh on the axes of all shafts, seen from +x: their teeth, and the balls and rollers of the bearings, turn with the time of the page.
 
 import { s, h } from './dom.js';
 import { arrowTo } from './drawing.js';
@@ -56,6 +56,23 @@ function outline({ teeth, radius, inside }, scale) {
   return `M${out.join('L')}Z`;
 }
 
+/** Balls or rollers of bearings on the axes of shafts: how many of what size there are, and where the first one stands at a time. */
+function rollingOf(run, shafts) {
+  // What has no states turns with the kinematic speed of its cage.
+  const turned = ({ shaft, direction }, share) => time => direction * share * (run.at(`${shaft}.angle`, time) || 0);
+  return shafts.flatMap(({ axis, bearings, links }) => [
+    ...bearings.map(bearing => {
+      const { balls: count, ball_diameter: size, pitch_diameter: pitch, contact_angle: angle } = bearing.bearing, own = run.mounted.get(bearing.name);
+      const kinematic = turned(bearing, 0.5 * (1 - (size / pitch) * Math.cos(angle)));
+      return { ...bearing, axis, count, size, pitch, first: own?.has('ball[1].azimuth') ? time => own.azimuth(1, time) : kinematic };
+    }),
+    ...links.filter(({ rollers }) => rollers).map(link => {
+      const { count, diameter: size, pitch_diameter: pitch, contact_angle: angle = 0 } = link.rollers;
+      return { ...link, axis, count, size, pitch, first: turned(link, 0.5 * (1 - (size / pitch) * Math.cos(angle))) };
+    }),
+  ]);
+}
+
 /** The figure; nothing where no gears mesh. */
 export function meshesFigure(run, shafts, width) {
   const gears = gearsOf(shafts);
@@ -83,6 +100,17 @@ export function meshesFigure(run, shafts, width) {
     out.push(s('g', { class: 'gear-seen', transform: `translate(${n(Y(y))} ${n(Z(z))})` }, s('title', {}, `${meshes.map(({ mesh }) => mesh).join(', ')}: ${teeth} teeth on ${shaft}`), body, s('circle', { r: n(radius * scale), class: 'axis pitch' })));
   }
   for (const [{ gear: { at: [y, z], radius }, azimuth }] of pairs) out.push(s('circle', { cx: n(Y(y + radius * Math.cos(azimuth))), cy: n(Z(z + radius * Math.sin(azimuth))), r: 4, class: 'contact outer' }));
+  const rolling = rollingOf(run, shafts);
+  for (const own of rolling) {
+    const { axis: [y, z], count, size, pitch, name } = own;
+    const elements = Array.from({ length: count }, (_, k) => {
+      const angle = (2 * Math.PI * k) / count;
+      return s('circle', { cx: n(0.5 * pitch * scale * Math.cos(angle)), cy: n(-0.5 * pitch * scale * Math.sin(angle)), r: n(0.5 * size * scale), class: 'ball' });
+    });
+    own.body = s('g', {}, elements);
+    out.push(s('g', { class: 'rolling', transform: `translate(${n(Y(y))} ${n(Z(z))})` }, s('title', {}, `${name}: ${count} ${own.rollers ? 'rollers' : 'balls'}`),
+      [-1, 1].map(side => s('circle', { r: n((0.5 * pitch + 0.5 * side * size) * scale), class: 'track' })), own.body));
+  }
   // Shafts on one axis have one place.
   const axes = [];
   for (const { name, axis } of shafts) {
@@ -97,8 +125,13 @@ export function meshesFigure(run, shafts, width) {
       // Axes up the page: a turn about +x, towards the reader, goes against the clock.
       body.setAttribute('transform', `rotate(${n((-180 / Math.PI) * (gear.tooth + (Number.isFinite(angle) ? angle : 0)))})`);
     }
+    for (const { body, first, direction } of rolling) {
+      // Seen from +x of the shaft; a bearing the other way round has its own y axis against it.
+      const azimuth = direction > 0 ? first(time) : Math.PI - first(time);
+      body.setAttribute('transform', `rotate(${n((-180 / Math.PI) * azimuth)})`);
+    }
   });
   const given = run.record.scene?.includes('[frame]') ? ' in the frame that is given' : '';
   return [h('h3', {}, 'The meshes'), h('figure', {}, h('div', { class: 'scroll' }, s('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', class: 'shaft meshes', 'aria-label': `Meshes: ${run.shaft.meshes.join(', ')}` }, out)),
-    h('figcaption', {}, `Seen from +x, to scale, turning with the time of the page${given}: pitch circles, and dots where they touch. Teeth are drawn in the transverse section, not to their profile.`))];
+    h('figcaption', {}, `Seen from +x, to scale, turning with the time of the page${given}: pitch circles, dots where they touch, and balls and rollers of the bearings. Teeth are drawn in the transverse section, not to their profile.`))];
 }

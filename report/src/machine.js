@@ -1,6 +1,8 @@
 // A machine: shafts and the bearings on them, whose runs follow that of the shafts.
 
 import { h, section, table } from './dom.js';
+import { millimetres } from './drawing.js';
+import { kindOf } from './links.js';
 import { figure, settledNote } from './summary.js';
 import { digits, rpm, withUnit } from './units.js';
 
@@ -24,9 +26,9 @@ export function likes(run, runs) {
   return runs.filter(other => Boolean(other.shaft) === Boolean(run.shaft) && other.of?.name === run.of?.name);
 }
 
-/** The shafts of a machine, each with its bearings. */
+/** The shafts of a machine, each with its bearings and what else holds it. */
 export function shaftsOf({ shaft }) {
-  return shaft.shafts.map(own => ({ ...own, bearings: shaft.bearings.filter(bearing => bearing.shaft === own.name) }));
+  return shaft.shafts.map(own => ({ ...own, bearings: shaft.bearings.filter(bearing => bearing.shaft === own.name), links: (shaft.links ?? []).filter(link => link.shaft === own.name) }));
 }
 
 /** The machine in a few words. */
@@ -85,6 +87,21 @@ export function cards(run) {
   return h('div', { class: 'cards' }, list);
 }
 
+/** A row for each bearing by rollers or by its stiffness and each coupling: forces on the shaft, means over the second half, and what its rollers have met. */
+function linksTable(run, several) {
+  const links = run.shaft.links ?? [];
+  if (!links.length) return null;
+  const rolls = links.some(({ rollers }) => rollers);
+  const heads = ['held by', ...(several ? ['shaft'] : []), 'position', 'what it is', 'force across', 'force along x', ...(rolls ? ['largest roller load in the run', 'peak pressure'] : [])];
+  const rows = links.map(link => {
+    const [x, y, z] = ['x', 'y', 'z'].map(axis => run.mean(`${link.name}.force.${axis}`));
+    const most = what => (link.rollers ? run.range(`${link.name}.${what}`)[1] : NaN);
+    return [link.name, ...(several ? [link.shaft] : []), millimetres(link.position), kindOf(link), withUnit(Math.hypot(y, z), 'force', 'N'), withUnit(x, 'force', 'N'),
+      ...(rolls ? [withUnit(most('largest_load'), 'load', 'N'), withUnit(most('peak_pressure'), 'pressure', 'Pa')] : [])];
+  });
+  return table(heads, rows, { numbers: heads.map((_, i) => i).filter(i => heads[i] === 'position' || i > heads.indexOf('what it is')) });
+}
+
 /** A row for each bearing, the energy of shaft and housings, and what is to be warned of. `open` shows the run of a bearing. */
 export function machineSection(run, open) {
   const { figures, error_bars: bars } = run.record.summary;
@@ -109,6 +126,7 @@ export function machineSection(run, open) {
   return section('machine', several ? 'Shafts and bearings' : 'Shaft and bearings',
     run.record.ended_early ? h('p', { class: 'warning' }, `The run ended early: ${run.record.ended_early}`) : null, (run.record.warnings ?? []).map(text => h('p', { class: 'warning' }, text)),
     table(heads, rows, { numbers: heads.map((_, i) => i).filter(i => heads[i] === 'position' || i > heads.indexOf('housing')) }),
+    linksTable(run, several),
     mounted.length ? h('p', { class: 'note' }, 'Forces are those of the bearings on the shaft, in its axes. Forces, losses and torque are means over the second half, or at the end of a run that is too short for means. \u00b1: numerical error, where \u201c--error\u201d measured it.') : null,
     mounted.length ? null : h('p', { class: 'note' }, 'What the bearings do is in the run of this machine by itself: \u201croulement report\u201d of its folder.'),
     lives.length ? h('p', { class: 'note' }, 'Life under the loads of the second half, their damage summed; hours at its mean speed.') : null,

@@ -3,6 +3,7 @@
 import { s, h, section } from './dom.js';
 import { arrowTo, marker, millimetres, short } from './drawing.js';
 import { meshesFigure } from './gears.js';
+import { kindOf, linkIn, linksIn } from './links.js';
 import { shaftsOf } from './machine.js';
 import { ringSections, groovePoint } from './shape.js';
 import { digits, rpm } from './units.js';
@@ -26,7 +27,7 @@ export function shaftDrawing(run, open) {
 
 function figureOf(run, open) {
   const { picture, stretched } = draw(run, open);
-  return h('figure', {}, h('div', { class: 'scroll' }, picture), h('figcaption', {}, `Seen along +y, to scale${stretched === 1 ? '' : `; radii and heights are drawn ${digits(stretched, 2)} times as large`}. Red: lines through the contacts, to where they meet the axis. Arrows: forces at named places.${run.shaft.discs.length ? ' Discs are drawn as steel ones of their mass and inertia.' : ''}${run.shaft.gears.length ? ` Gears reach to their pitch circle, dots are pitch points${run.shaft.gears.every(gear => gear.face_width) ? '' : '; the width of a gear without a mesh is not known'}.` : ''}${run.shaft.housings.length ? ' What housings look like is not known: frames are around their bearings, feet and places.' : ''}`));
+  return h('figure', { 'data-shaft': run.shaft.name }, h('div', { class: 'scroll' }, picture), h('figcaption', {}, `Seen along +y, to scale${stretched === 1 ? '' : `; radii and heights are drawn ${digits(stretched, 2)} times as large`}. Red: lines through the contacts, to where they meet the axis. Arrows: forces at named places.${run.shaft.discs.length ? ' Discs are drawn as steel ones of their mass and inertia.' : ''}${run.shaft.gears.length ? ` Gears reach to their pitch circle, dots are pitch points${run.shaft.gears.every(gear => gear.face_width) ? '' : '; the width of a gear without a mesh is not known'}.` : ''}${run.shaft.housings.length ? ' What housings look like is not known: frames are around their bearings, feet and places.' : ''}`));
 }
 
 /** All that has a place, [m]: x along the axis, r across it, and a label with a leader to the point (x, r). */
@@ -56,6 +57,7 @@ function parts(run) {
     list.push({ x: [from, to], r: [-outer / 2, outer / 2] });
     return { from, to, outer: outer / 2, inner: inner / 2 };
   });
+  const links = linksIn(run, list, x => Math.max(0, ...sections.filter(({ from, to }) => x >= from && x <= to).map(({ outer }) => outer)));
   const places = [];
   const place = (name, x, r, force) => {
     list.push({ x: [x, x], r: [r, r], label: { x, r, text: force ? `${name}: ${sizeOf(force)}` : name, top: r > 0 } });
@@ -74,7 +76,7 @@ function parts(run) {
     list.push({ ...box, label: { x: box.x[0], r: box.r[1], text: housing.name, top: true } });
     return { ...box, index, centre: housing.centre, feet: housing.feet };
   }).filter(Boolean);
-  return { list, bearings, discs, gears, sections, places, housings };
+  return { list, bearings, links, discs, gears, sections, places, housings };
 }
 
 const largest = ({ least, most }) => (Math.abs(most) > Math.abs(least) ? most : least);
@@ -102,7 +104,7 @@ function rows(labels, X) {
 }
 
 function draw(run, open) {
-  const { list, bearings, discs, gears, sections, places, housings } = parts(run);
+  const { list, bearings, links, discs, gears, sections, places, housings } = parts(run);
   let [x0, x1] = [Math.min(...list.map(part => part.x[0])), Math.max(...list.map(part => part.x[1]))];
   // A line for a shaft without sections goes a little beyond what is on it.
   if (!sections.length) { const beyond = 0.08 * (x1 - x0); x0 -= beyond; x1 += beyond; }
@@ -150,6 +152,7 @@ function draw(run, open) {
   }
   if (sections.length) out.push(axis);
   for (const part of bearings) out.push(bearingIn(run, part, { X, R, scale, across, n, ground, x0, x1, open }));
+  for (const link of links) out.push(linkIn(link, { X, R, n, ground }));
   for (const { x, r, force } of places) {
     out.push(s('circle', { cx: n(X(x)), cy: n(R(r)), r: 3.6, class: 'place' }));
     if (!force) continue;
@@ -242,6 +245,7 @@ function facts(run, shaft) {
     ['Shaft', shaft.sections.length ? `${shaft.sections.length} section${shaft.sections.length > 1 ? 's' : ''} of beams` : shaft.modes.length ? 'of matrices' : 'rigid'],
     ['Modes', shaft.modes.length ? `${shaft.modes.length} between held places, ${digits(shaft.modes[0], 4)} to ${digits(shaft.modes.at(-1), 4)}\u202fHz` : null],
     ['Bearings', [...kinds].map(([kind, names]) => `${names.join(', ')}: ${kind}`).join('; ')],
+    ['Other links', shaft.links.map(link => `${link.name}: ${kindOf(link)}`).join('; ')],
     ['Gears', shaft.gears.map(({ position, pitch_radius: radius, helix_angle: helix, mesh }, i) => `${mesh ?? `gear ${i + 1}`}: pitch radius ${millimetres(radius)}${helix ? `, helix ${short((helix * 180) / Math.PI, 4)}\u00b0` : ''}, at ${millimetres(position)}`).join('; ')],
     ['Discs', shaft.discs.map(({ position, mass, unbalance }, i) => `disc ${i + 1}: ${short(mass)}\u202fkg${unbalance ? `, unbalance ${short(unbalance * 1e6, 4)}\u202fg\u202fmm` : ''}, at ${millimetres(position)}`).join('; ')],
     ['Forces along x, y, z', loads.map(({ name, force }) => `${name}: ${vector(force)}`).join('; ')],

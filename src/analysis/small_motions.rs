@@ -166,10 +166,14 @@ impl SmallMotions {
         self
     }
 
-    /// All motions, the fastest growing first; one of each conjugate pair. None where eigenvalues are not found.
-    pub fn motions(&self) -> Option<Vec<SmallMotion>> {
+    /// Motions whose eigenvalue is `wanted`, the fastest growing first; one of each conjugate pair. None where eigenvalues are not found.
+    pub fn motions(&self, wanted: impl Fn(Complex<f64>) -> bool) -> Option<Vec<SmallMotion>> {
         let size = self.mass.nrows();
-        let mut found: Vec<SmallMotion> = eigenpairs(&self.matrix)?
+        let swinging = |value: Complex<f64>| match value {
+            value if value.im.abs() > SWINGS * value.norm() => value,
+            value => Complex::from(value.re),
+        };
+        let mut found: Vec<SmallMotion> = eigenpairs(&self.matrix, |value| wanted(swinging(value)))?
             .into_iter()
             .map(|pair| {
                 let vector = match &self.lift {
@@ -179,12 +183,8 @@ impl SmallMotions {
                 let rates = vector.rows(size, size);
                 let of_bodies = self.energy_of_bodies(&rates);
                 let of_balls = self.energy_of_balls(&vector.rows_range(2 * size..));
-                let value = match pair.value {
-                    value if value.im.abs() > SWINGS * value.norm() => value,
-                    value => Complex::from(value.re),
-                };
                 let balls = of_balls / (of_bodies + of_balls).max(f64::MIN_POSITIVE);
-                SmallMotion { value, shape: vector.rows(0, size).into_owned(), balls }
+                SmallMotion { value: swinging(pair.value), shape: vector.rows(0, size).into_owned(), balls }
             })
             .collect();
         found.sort_by(|a, b| b.value.re.total_cmp(&a.value.re));

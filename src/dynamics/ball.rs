@@ -125,6 +125,8 @@ pub struct BallTrial {
     pub before: f64,
     /// How far it was moved alone before a correction, where it was.
     pub repaired: Option<Vector6<f64>>,
+    /// Is it to be brought back alone?
+    pub out: bool,
     /// Reactions on the bodies with their derivatives, where those were asked for.
     reactions: [Option<Reaction>; SLOTS],
 }
@@ -155,6 +157,7 @@ impl BallTrial {
             renewed: false,
             before: 0.0,
             repaired: None,
+            out: false,
             reactions: [None; SLOTS],
         }
     }

@@ -339,10 +339,11 @@ impl BearingStep<'_> {
 /// Brings balls of bearings that are corrected together back where they are far out of balance, and renews blocks that are out of date, before a
 /// correction.
 pub(super) fn prepare_correction(bearings: &mut [BearingStep<'_>]) {
+    let alone = bearings.len() == 1;
     for step in bearings.iter_mut() {
         step.workspace.balls.iter_mut().for_each(|trial| trial.repaired = None);
         if step.keeps_matrices() && !step.balls_are_independent() {
-            step.repair_balls();
+            step.repair_balls(alone);
         }
     }
     let corrected = bearings.iter().any(|step| step.corrections > 0);

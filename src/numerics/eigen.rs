@@ -25,9 +25,9 @@ pub struct Eigenpair {
     pub vector: DVector<Complex<f64>>,
 }
 
-/// All real eigenvalues, and of each conjugate pair that with the positive imaginary part, with their vectors. None where a number is not
-/// finite, or where the iteration does not end.
-pub fn eigenpairs(matrix: &DMatrix<f64>) -> Option<Vec<Eigenpair>> {
+/// The real eigenvalues that are `wanted`, and of each such conjugate pair that with the positive imaginary part, with their vectors. None where a
+/// number is not finite, or where the iteration does not end.
+pub fn eigenpairs(matrix: &DMatrix<f64>, wanted: impl Fn(Complex<f64>) -> bool) -> Option<Vec<Eigenpair>> {
     if matrix.iter().any(|value| !value.is_finite()) {
         return None;
     }
@@ -42,7 +42,8 @@ pub fn eigenpairs(matrix: &DMatrix<f64>) -> Option<Vec<Eigenpair>> {
     let least = f64::EPSILON * t.amax().max(f64::MIN_POSITIVE);
     while row < size {
         let pair = row + 1 < size && t[(row + 1, row)] != 0.0;
-        for value in if pair { block_eigenvalues(&t, row) } else { vec![Complex::from(t[(row, row)])] } {
+        let values = if pair { block_eigenvalues(&t, row) } else { vec![Complex::from(t[(row, row)])] };
+        for value in values.into_iter().filter(|value| wanted(*value)) {
             let of_t = triangular_vector((&t, &rows, least), (row, pair), value);
             let part = |of: fn(&Complex<f64>) -> f64| q.columns(0, of_t.len()) * of_t.map(|value| of(&value));
             let (re, im) = (part(|value| value.re), part(|value| value.im));
@@ -175,7 +176,7 @@ mod tests {
         let mix =
             DMatrix::from_fn(7, 7, |i, k| 1.0 / (1.0 + (i * i + 3 * k) as f64) + f64::from(u8::from(i == k)));
         let matrix = &mix * known * mix.clone().try_inverse().unwrap();
-        let found = eigenpairs(&matrix).unwrap();
+        let found = eigenpairs(&matrix, |_| true).unwrap();
         assert_eq!(found.len(), 5);
         let expected = [(-1.0, 2.0), (3.0, 0.5), (7.0, 0.0), (-4.0, 0.0), (0.0, 0.0)];
         for (re, im) in expected {
@@ -183,7 +184,9 @@ mod tests {
             let nearest = found.iter().map(|pair| (pair.value - wanted).norm()).fold(f64::INFINITY, f64::min);
             assert!(nearest < 1e-12, "{wanted} {nearest:e}");
         }
-        for pair in &found {
+        let growing = eigenpairs(&matrix, |value| value.re > 1e-6).unwrap();
+        assert_eq!(growing.iter().map(|pair| pair.value.re.round()).sum::<f64>(), 10.0);
+        for pair in found.iter().chain(&growing) {
             assert!(left(&matrix, pair) < 1e-14, "{} {:e}", pair.value, left(&matrix, pair));
         }
     }
@@ -206,7 +209,8 @@ mod tests {
         let units = DVector::from_fn(size, |i, _| 10f64.powi((i % 7) as i32 * 2 - 6));
         let other = DMatrix::from_fn(size, size, |i, k| chain[(i, k)] * units[i] / units[k]);
         let sorted = |matrix: &DMatrix<f64>| {
-            let mut values: Vec<_> = eigenpairs(matrix).unwrap().into_iter().map(|pair| pair.value).collect();
+            let mut values: Vec<_> =
+                eigenpairs(matrix, |_| true).unwrap().into_iter().map(|pair| pair.value).collect();
             values.sort_by(|a, b| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
             values
         };
@@ -216,6 +220,6 @@ mod tests {
         for (a, b) in own.iter().zip(&others) {
             assert!((a - b).norm() < 1e-12 * largest, "{a} {b}");
         }
-        assert!(eigenpairs(&DMatrix::repeat(2, 2, f64::NAN)).is_none());
+        assert!(eigenpairs(&DMatrix::repeat(2, 2, f64::NAN), |_| true).is_none());
     }
 }

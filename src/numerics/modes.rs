@@ -2,6 +2,8 @@
 
 use nalgebra::{Cholesky, Complex, DMatrix, DVector, Schur};
 
+use super::size::ascending;
+
 /// [-] eigenvalues whose imaginary part is a smaller part of the largest eigenvalue do not swing.
 const SWINGS: f64 = 1e-7;
 /// Iterations of the eigenvalues for each of them, at most.
@@ -53,9 +55,9 @@ pub fn modes(mass: &DMatrix<f64>, damping: &DMatrix<f64>, stiffness: &DMatrix<f6
     whole.view_mut((n, n), (n, n)).copy_from(&-&damping);
     let eigenvalues = Schur::try_new(whole, f64::EPSILON, ITERATIONS * 2 * n)?.complex_eigenvalues();
     let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
-    let mut swinging: Vec<Complex<f64>> =
+    let swinging: Vec<Complex<f64>> =
         eigenvalues.iter().copied().filter(|value| value.im > SWINGS * largest).collect();
-    swinging.sort_by(|a, b| a.im.total_cmp(&b.im));
+    let rates: Vec<f64> = swinging.iter().map(|value| value.im).collect();
     let back = lower.transpose();
     let mode = |eigenvalue: Complex<f64>| {
         let x = shape(&damping, &stiffness, eigenvalue)?;
@@ -64,7 +66,7 @@ pub fn modes(mass: &DMatrix<f64>, damping: &DMatrix<f64>, stiffness: &DMatrix<f6
         let shape = re.zip_map(&im, Complex::new);
         Some(Mode { eigenvalue: eigenvalue * rate, shape })
     };
-    swinging.into_iter().map(mode).collect()
+    ascending(&rates).into_iter().map(|k| mode(swinging[k])).collect()
 }
 
 /// The shape of an eigenvalue, by inverse iteration.

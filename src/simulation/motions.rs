@@ -58,7 +58,12 @@ impl Motion {
     }
 }
 
-/// Motions of bodies that swing, by their frequency. What balls do alone, each for itself, is left out. `moves_most` is
+/// Is an eigenvalue that of a motion that swings: not of one that creeps back, nor grows at once?
+pub(super) fn swings(value: Complex<f64>) -> bool {
+    value.im > 0.0 && value.re.abs() < HARDLY * value.norm()
+}
+
+/// Motions of bodies among those that swing, by their frequency. What balls do alone, each for itself, is left out. `moves_most` is
 /// [`Simulation::rolls_over`] of the bearing that moves most.
 pub(super) fn worth_telling(
     found: &[SmallMotion],
@@ -72,8 +77,7 @@ pub(super) fn worth_telling(
         rolled_over: moves_most(motion).map_or(f64::INFINITY, |rolls| rolls / motion.frequency()),
         shape: name(motion),
     };
-    let swings = |motion: &Motion| motion.frequency > 0.0 && motion.damping().abs() < HARDLY;
-    let is_listed = |motion: &Motion| swings(motion) && (motion.balls < OF_BALLS || motion.grows());
+    let is_listed = |motion: &Motion| motion.balls < OF_BALLS || motion.grows();
     let with_bodies = found.iter().filter(|motion| motion.balls < 1.0 - BODIES).map(described);
     let mut motions: Vec<Motion> = with_bodies.filter(is_listed).collect();
     motions.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
@@ -200,7 +204,7 @@ impl Simulation {
             seats.push(seated((*body, moved), state, self.applied_moment(*body), (first, size)));
             first += free(moved).len();
         }
-        let motions = SmallMotions::new(&movers, &[self.running(seats)]).motions()?;
+        let motions = SmallMotions::new(&movers, &[self.running(seats)]).motions(swings)?;
         let name = |motion: &SmallMotion| {
             let mut first = 0;
             let parts = bodies.iter().map(|(body, moved, state)| {

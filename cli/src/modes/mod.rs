@@ -154,11 +154,13 @@ pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
     let of = |scene: &MachineScene| at(scene, &asked).ok()?.1.ok();
     let mut motions = match in_pockets_with_play(scene) {
         None => of(scene)?,
-        Some(free) => {
-            let mut motions = of(&free)?;
-            motions.extend(growing_in_ideal_cages(scene, &asked));
-            motions
-        }
+        // Each runs a machine of its own.
+        Some(free) => std::thread::scope(|threads| {
+            let held = threads.spawn(|| growing_in_ideal_cages(scene, &asked));
+            let free = of(&free);
+            let held = held.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            free.map(|motions| motions.into_iter().chain(held).collect::<Vec<_>>())
+        })?,
     };
     motions.sort_by(|a, b| b.motion.growth.total_cmp(&a.motion.growth));
     Some(motions)

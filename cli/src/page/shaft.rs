@@ -1,4 +1,4 @@
-//! Dimensions of a shaft, what is on it, where its bearings sit, and its housings, for drawings; and its motion.
+//! Dimensions of a shaft, what is on it, where its bearings and links sit, and its housings, for drawings; and its motion.
 
 use nalgebra::Vector3;
 use roulement::scene::system::SystemScene;
@@ -51,6 +51,24 @@ pub fn describe(system: &System) -> Value {
             "direction": mounted.mounting.direction.sign(),
             "housing": system.scene().housing_of(index).map(|housing| &housings[housing].name),
             "bearing": bearing::describe(own.scene(), own.model()),
+        })).collect::<Vec<_>>(),
+        "links": system.scene().springs.iter().map(|link| json!({
+            "name": link.name,
+            "position": shafts[link.shaft].place(link.position)[0],
+            "shaft": shafts[link.shaft].name,
+            "with": link.second.map(|second| &shafts[second].name),
+            "direction": link.rollers.as_ref().and_then(|rollers| rollers.geometry().taper).map_or(1.0, |taper| taper.direction),
+            "rollers": link.rollers.as_ref().map(|rollers| {
+                let of = rollers.geometry();
+                json!({
+                    "count": of.count,
+                    "diameter": of.diameter,
+                    "length": of.length,
+                    "pitch_diameter": of.pitch_diameter,
+                    "contact_angle": of.taper.map_or(0.0, |taper| taper.contact_angle),
+                    "roller_angle": of.taper.map_or(0.0, |taper| taper.roller_angle),
+                })
+            }),
         })).collect::<Vec<_>>(),
         "housings": housings.iter().map(|housing| json!({
             "name": housing.name,

@@ -3,6 +3,7 @@
 pub mod border;
 mod dense;
 pub mod elements;
+mod joined;
 mod sensitivity;
 mod step;
 mod structure;

@@ -17,14 +17,13 @@ use crate::dynamics::rest;
 use crate::dynamics::stages::{Stage, Stages};
 use crate::model::Model;
 use crate::model::bodies::Race;
-use crate::model::link::{self, Link, LinkForce};
+use crate::model::link::{Link, LinkForce};
 use crate::model::state::{KeptMatrix, State};
 use crate::model::structure::{Structure, StructureState};
 use crate::numerics::esdirk;
-use crate::numerics::given::take_out;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{Equations, NewtonFailure, REFACTOR_CONTRACTION};
-use crate::numerics::size::{larger, largest};
+use crate::numerics::size::larger;
 
 /// [-] damping parameter of a system all of whose bearings are without states, where they do not say so.
 const DEFAULT_ALPHA: f64 = 0.05;
@@ -82,10 +81,10 @@ pub struct SystemStep<'a> {
     /// The bearings.
     pub bearings: Vec<BearingStep<'a>>,
     /// The structures.
-    structures: &'a [StructureStep<'a>],
+    pub(super) structures: &'a [StructureStep<'a>],
     /// Their trials.
     pub trials: Vec<StructureTrial>,
-    joined: Joined<'a>,
+    pub(super) joined: Joined<'a>,
     /// The scheme.
     pub step: HhtStep,
     /// Accelerations that are expected of the structures in a stage.
@@ -93,20 +92,22 @@ pub struct SystemStep<'a> {
     /// First unknown of each bearing, then of each structure, and the end.
     first: Vec<usize>,
     /// First border row of each structure, and the end.
-    rows: Vec<usize>,
+    pub(super) rows: Vec<usize>,
     /// Rows of it of coordinates whose motion is given.
-    held: Vec<usize>,
-    border: &'a mut Border,
+    pub(super) held: Vec<usize>,
+    pub(super) border: &'a mut Border,
     /// How often the matrices of the bearings whose rows the border has were assembled; none before it has some.
     assembled: Option<u64>,
     /// How often a new tangent was asked for, which bearings without states do not count.
     asked: u64,
     /// [-] residual of each bearing over its tolerance.
     norms: Vec<f64>,
+    /// Forces of links where the structures are.
+    pub(super) link_forces: Vec<LinkForce>,
     /// Bearings without states where the structures are.
-    seen: Vec<(Seen, OnRaces)>,
+    pub(super) seen: Vec<(Seen, OnRaces)>,
     /// Carried races of each bearing.
-    carried: Vec<Vec<CarriedRace<'a>>>,
+    pub(super) carried: Vec<Vec<CarriedRace<'a>>>,
 }
 
 impl<'a> SystemStep<'a> {
@@ -162,6 +163,7 @@ impl<'a> SystemStep<'a> {
             assembled: None,
             asked: 0,
             norms: vec![],
+            link_forces: vec![],
             seen: vec![],
             carried: vec![],
         };
@@ -251,112 +253,6 @@ impl<'a> SystemStep<'a> {
         self.bearings.iter_mut().for_each(|step| step.workspace.kept = KeptMatrix::default());
     }
 
-    /// Sets the races that structures carry to where these are.
-    fn carry_races(&mut self) {
-        for (carried, step) in self.carried.iter_mut().zip(&mut self.bearings) {
-            for race in carried {
-                let Joint { structure, seat, .. } = race.joint;
-                let motion = self.trials[*structure].seat(self.structures[*structure].model, seat);
-                race.follow(&motion, step);
-            }
-        }
-    }
-
-    /// Residuals of the structures under what their bearings do; the largest over the tolerance.
-    fn assemble_structures(&mut self) -> f64 {
-        self.trials.iter_mut().for_each(StructureTrial::clear);
-        let mut tolerance = f64::INFINITY;
-        for Joint { bearing, race, structure, seat } in self.joined.joints {
-            let step = &self.bearings[*bearing];
-            tolerance = tolerance.min(step.force_tolerance);
-            if let Some(trial) = &step.workspace.bodies[*race]
-                && let Some(motion) = trial.seat()
-            {
-                self.trials[*structure].add(seat, motion, &trial.end.bearing_wrench);
-            }
-        }
-        for link in self.joined.links {
-            let force = self.link_force(link).force;
-            for (index, end) in link.ends.iter().enumerate() {
-                self.trials[end.structure].add_link(end, &(force * link::sign(index)));
-            }
-        }
-        for (element, (seen, on)) in self.joined.elements.iter().zip(&self.seen) {
-            tolerance = tolerance.min(element.tolerance());
-            element.add(seen, on, &mut self.trials);
-        }
-        let mut norm = 0.0;
-        for (index, (one, trial)) in self.structures.iter().zip(&mut self.trials).enumerate() {
-            trial.assemble(one.model, one.start, one.load, &self.step);
-            let forces = trial.residual.component_div(one.scales);
-            // All its races leave something in it: without this, each of many would be held to a tighter tolerance than one of a pair.
-            let joints = self.joined.joints.iter().filter(|joint| joint.structure == index).count();
-            let elements =
-                self.joined.elements.iter().flat_map(|element| element.joint.seats.iter().flatten());
-            let races = joints + elements.filter(|(structure, _)| *structure == index).count();
-            let tolerance = tolerance * f64::max(0.5 * races as f64, 1.0);
-            norm = larger(norm, largest(forces.iter()) / tolerance);
-        }
-        norm
-    }
-
-    /// Force of a link where the structures are.
-    fn link_force(&self, link: &Link) -> LinkForce {
-        let [displacement, rate] = link.motion(|structure| &self.trials[structure].end);
-        link.force(&displacement, &rate, None)
-    }
-
-    /// Assembles and factorises the border.
-    fn factorise(&mut self) {
-        let mut matrix = self.border.cleared(self.rows[self.structures.len()]);
-        for ((one, trial), at) in self.structures.iter().zip(&self.trials).zip(&self.rows) {
-            trial.add_tangent(one.model, &self.step, &mut matrix, *at);
-        }
-        for Joint { bearing, race, structure, seat } in self.joined.joints {
-            if let Some(trial) = &self.bearings[*bearing].workspace.bodies[*race]
-                && let Some(motion) = trial.seat()
-            {
-                let moment = &trial.end.bearing_wrench.moment;
-                let turned = self.trials[*structure].turned_moments(seat, motion, moment, &self.step);
-                let at = self.rows[*structure];
-                for (i, row) in seat.coordinates().iter().enumerate() {
-                    for (k, column) in seat.coordinates().iter().enumerate() {
-                        matrix[(at + row, at + column)] += turned[(i, k)];
-                    }
-                }
-            }
-        }
-        for link in self.joined.links {
-            let LinkForce { by_displacement, by_rate, .. } = self.link_force(link);
-            let gains = by_displacement * self.step.position_gain() + by_rate * self.step.velocity_gain();
-            let ends = || link.ends.iter().enumerate();
-            for ((i, row), (k, column)) in ends().flat_map(|row| ends().map(move |column| (row, column))) {
-                let signs = -(1.0 - self.step.alpha_f) * link::sign(i) * link::sign(k);
-                let block = row.map.tr_mul(&(gains * &column.map)) * signs;
-                for (from, place) in row.coordinates.iter().enumerate() {
-                    for (to, other) in column.coordinates.iter().enumerate() {
-                        let at = (self.rows[row.structure] + place, self.rows[column.structure] + other);
-                        matrix[at] += block[(from, to)];
-                    }
-                }
-            }
-        }
-        for (element, (seen, on)) in self.joined.elements.iter().zip(&self.seen) {
-            element.add_tangent((seen, on), &self.trials, &self.step, &self.rows, &mut matrix);
-        }
-        for (step, carried) in self.bearings.iter().zip(&self.carried) {
-            for rows in carried {
-                carried
-                    .iter()
-                    .for_each(|columns| rows.add_block(columns, &step.workspace.reduced, &mut matrix));
-            }
-        }
-        take_out(&mut matrix, self.held.iter().copied(), 1.0);
-        // Bearings with states renew theirs step by step.
-        let size = self.bearings.is_empty().then_some(self.step.h);
-        self.border.factorise(matrix, size);
-    }
-
     /// Where the residual is largest after Newton's method gave up.
     pub fn unsolved(&self, failure: NewtonFailure) -> (usize, StepFailure) {
         let index = index_of_largest(self.norms.iter().copied());
@@ -436,13 +332,7 @@ impl Equations for SystemStep<'_> {
             let own = &unknowns[self.first[count + index]..self.first[count + index + 1]];
             trial.move_to(one.model, own, one.start, &self.step, one.load);
         }
-        self.carry_races();
-        self.seen.clear();
-        for element in self.joined.elements {
-            let seen = element.see(&self.trials, self.structures);
-            let on = element.forces(&seen);
-            self.seen.push((seen, on));
-        }
+        self.see_structures();
         self.asked += u64::from(with_tangent);
         self.norms.clear();
         for (index, step) in self.bearings.iter_mut().enumerate() {

@@ -168,6 +168,11 @@ impl Rollers {
         Self::with_stations(geometry, dynamic_load_rating, None)
     }
 
+    /// What it was made with.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
     /// The same with so many stations along a line.
     pub fn with_stations(
         geometry: Geometry,

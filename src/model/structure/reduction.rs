@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::numerics::size::ascending;
+
 /// Modes of a stiffness and a mass matrix up to an angular frequency, with unit generalised mass, by ascending frequency.
 pub fn modes(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, highest: f64) -> (DMatrix<f64>, Vec<f64>) {
     let none = (DMatrix::zeros(mass.nrows(), 0), vec![]);
@@ -10,8 +12,7 @@ pub fn modes(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, highest: f64) -> (DM
     let Some(half) = lower.solve_lower_triangular(stiffness) else { return none };
     let Some(scaled) = lower.solve_lower_triangular(&half.transpose()) else { return none };
     let eigen = symmetric(&scaled).symmetric_eigen();
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    let mut order = ascending(eigen.eigenvalues.as_slice());
     order.retain(|k| eigen.eigenvalues[*k] <= highest * highest);
     let frequencies = order.iter().map(|k| eigen.eigenvalues[*k].max(0.0).sqrt()).collect();
     let columns: Vec<DVector<f64>> =

@@ -5,6 +5,7 @@ use super::check_motion::given_motion;
 use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
 use super::{MountedScene, NamedLoad, Written, check_housing, rollers, spring};
 use crate::effects::gravity::GRAVITY;
+use crate::numerics::size::ascending;
 use crate::schema::numbers::Range;
 use crate::schema::{AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, check_duty, check_phases};
 
@@ -359,9 +360,9 @@ fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
         Range::closed(0.0, 0.99 * outer, "m").check("shaft.section.inner_diameter", inner)?;
         ends.push((from, to));
     }
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for pair in ends.windows(2) {
-        let (left, right) = (pair[0].1, pair[1].0);
+    let begins: Vec<f64> = ends.iter().map(|end| end.0).collect();
+    for pair in ascending(&begins).windows(2) {
+        let (left, right) = (ends[pair[0]].1, ends[pair[1]].0);
         if (right - left).abs() > 1e-9 {
             let why = format!(
                 "{right} m: the section before it ends at {left} m, and sections must follow each other without gap or overlap"

@@ -9,6 +9,7 @@ use crate::model::link::gear_pair::{Gear, GearPair};
 use crate::model::link::tooth_mesh::{ToothFriction, Varying};
 use crate::model::link::variation::{Term, Variation};
 use crate::numerics::periodic_spline::PeriodicSpline;
+use crate::numerics::size::ascending;
 use crate::schema::numbers::Range;
 use crate::schema::units::{Quantity, Ratio};
 use crate::schema::{MeshSection, Over, SceneError, ShaftSection, Varies};
@@ -290,15 +291,14 @@ fn ties(meshes: &[SceneMesh], springs: &[SceneSpring]) -> Vec<Tie> {
 /// The trains of all shafts.
 pub fn trains(shafts: &[ShaftSection], meshes: &[SceneMesh], springs: &[SceneSpring]) -> Vec<InTrain> {
     let ties = ties(meshes, springs);
-    let rank = |shaft: &usize| match &shafts[*shaft] {
-        one if one.speed.is_some() => 0,
-        one if one.start_speed.is_some() => 1,
-        _ => 2,
+    let rank = |shaft: &ShaftSection| match shaft {
+        one if one.speed.is_some() => 0.0,
+        one if one.start_speed.is_some() => 1.0,
+        _ => 2.0,
     };
-    let mut order: Vec<usize> = (0..shafts.len()).collect();
-    order.sort_by_key(rank);
+    let ranks: Vec<f64> = shafts.iter().map(rank).collect();
     let mut found: Vec<Option<InTrain>> = vec![None; shafts.len()];
-    for root in order {
+    for root in ascending(&ranks) {
         if found[root].is_some() {
             continue;
         }

@@ -9,7 +9,7 @@ use crate::dynamics::system::{Joint, StructureTrial};
 use crate::model::bodies::{Body, Race};
 use crate::model::structure::{Carrier, Map};
 use crate::numerics::modes::Mode;
-use crate::simulation::motions::{Motion, Part, free, named, seated, worth_telling};
+use crate::simulation::motions::{Motion, Part, free, named, seated, swings, worth_telling};
 
 impl System {
     /// Motions of shaft, housings, rings and cages about the present state that swing, by their frequency; in a frame that moves, as they are
@@ -53,7 +53,7 @@ impl System {
             }
             running.push(bearing.running(seats));
         }
-        let motions = SmallMotions::new(&movers, &running).holding(&self.held()).motions()?;
+        let motions = SmallMotions::new(&movers, &running).holding(&self.held()).motions(swings)?;
         let structures = structures.iter().zip(&first);
         let structures: Vec<_> = structures.collect();
         let name = |motion: &SmallMotion| {

@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Figures of the three-stage gearbox for docs/gearbox.md: its spectrum, its pictures on the page, its lines over the speed, and loads over a mesh.
+
+Its teeth are given a stiffness that varies by 15 % and, at twice the frequency of the mesh, by 5 %: how those of this gearbox vary is not known.
+
+Usage: scripts/gearbox_figures.py    renews docs/figures/gearbox-{spectrum,meshes,third}.png, gearbox-lines.svg and gearbox-loads.svg, and the numbers
+                                     of the run in docs/gearbox.md; some minutes of CPU. Needs matplotlib, Node and Chromium as scripts/report-page does.
+ROULEMENT_BIN is the program; CHROMIUM the browser.
+"""
+
+import csv
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
+
+HERE = Path(__file__).resolve().parent.parent
+FIGURES = HERE / "docs" / "figures"
+PROGRAM = Path(os.environ.get("ROULEMENT_BIN", HERE / "target" / "release" / "roulement"))
+SCENE = HERE / "examples" / "gearbox" / "three_stage.toml"
+VARIATION = '[{ amplitude = "15 %" }, { order = 2, amplitude = "5 %" }]'
+#: The run: its end, and the distance of its rows.
+DURATION, ROWS = "0.1 s", "20 us"
+#: [Hz] meshes of its stages, by teeth and speed.
+MESHES = {"stage1": 1400 / 60 * 23, "stage2": 1400 / 60 * 23 / 67 * 13, "stage3": 1400 / 60 * 23 / 67 * 13 / 76 * 14}
+#: Periods of the first mesh that are drawn.
+PERIODS = 4
+
+
+def varying() -> str:
+    """The scene with teeth that vary, and the rows of the run."""
+    text = SCENE.read_text(encoding="utf-8")
+    text = text.replace("[[mesh]]\n", f"[[mesh]]\nstiffness_variation = {VARIATION}\n")
+    text = re.sub(r"(?m)^duration = .*", f'duration = "{DURATION}"', text)
+    return re.sub(r"(?m)^output_interval = .*", f'output_interval = "{ROWS}"', text)
+
+
+def run(*arguments: str | Path) -> float:
+    """Runs the program; gives its CPU time [s]."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([PROGRAM, *arguments], check=True, stdout=subprocess.DEVNULL)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime
+
+
+def chromium() -> str:
+    """The browser."""
+    names = ["chromium", "chromium-browser", "google-chrome"]
+    found = os.environ.get("CHROMIUM") or next((path for name in names if (path := shutil.which(name))), None)
+    return found or sys.exit("error: no Chromium is here: install it, or name it by CHROMIUM")
+
+
+def loads_over_meshes(folder: Path) -> None:
+    """Normal force of the first mesh, and what the bearings of both its shafts carry across, over some of its periods at the end of the run."""
+    with open(folder / "shaft.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    names = {name.split(" [")[0]: name for name in rows[0]}
+    end = float(rows[-1][names["time"]])
+    begin = end - PERIODS / MESHES["stage1"]
+    late = [row for row in rows if float(row[names["time"]]) >= begin]
+    time = [1e3 * (float(row[names["time"]]) - begin) for row in late]
+    plt.rcParams.update({"font.size": 9, "svg.hashsalt": "gearbox", "svg.fonttype": "none"})
+    figure, (above, below) = plt.subplots(2, 1, figsize=(8, 5), sharex=True, layout="constrained")
+    above.plot(time, [float(row[names["stage1.normal_force"]]) for row in late], color="k")
+    above.set_ylabel("teeth of stage1: normal force [N]")
+    for bearing in ["input-left", "input-right", "second-left", "second-right"]:
+        with open(folder / bearing / "results.csv", newline="", encoding="utf-8") as file:
+            own = [row for row in csv.DictReader(file) if float(row["time [s]"]) >= begin]
+        force = [sum(float(row[f"inner.force.{axis} [N]"]) ** 2 for axis in "yz") ** 0.5 for row in own]
+        below.plot([1e3 * (float(row["time [s]"]) - begin) for row in own], force, label=bearing)
+    below.set_ylabel("bearings: radial force [N]")
+    below.set_xlabel(f"time [ms], {PERIODS} periods of stage1")
+    below.legend(ncols=4, loc="upper right", fontsize=8)
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+        axes.margins(x=0)
+    figure.savefig(FIGURES / "gearbox-loads.svg", metadata={"Date": None})
+
+
+def main() -> None:
+    if len(sys.argv) > 1:
+        sys.exit(f"error: {sys.argv[1]} is no option of this script: it has none")
+    browser = chromium()
+    with tempfile.TemporaryDirectory() as scratch:
+        scratch = Path(scratch)
+        scene = scratch / "gearbox.toml"
+        scene.write_text(varying(), encoding="utf-8")
+        columns = "*.normal_force,*.angle,*.speed,*.force.*,*largest_load,*peak_pressure,*.azimuth,frequency.*,life.*,loss.*"
+        spent = run("run", scene, "-o", scratch / "run", "--columns", columns)
+        record = json.loads((scratch / "run" / "run.json").read_text(encoding="utf-8"))
+        run("report", scratch / "run", "-o", scratch / "gearbox.html")
+        parts = {"#spectra": "spectrum", "figure:has(.meshes)": "meshes", "figure[data-shaft=third]": "third"}
+        pictures = [f"{selector}={FIGURES}/gearbox-{name}.png" for selector, name in parts.items()]
+        environment = {**os.environ, "CHROMIUM": browser}
+        subprocess.run([HERE / "report" / "test", scratch, "--parts", "gearbox.html", *pictures], check=True, env=environment)
+        run("modes", SCENE, "-o", scratch / "modes")
+        shutil.copy(scratch / "modes" / "campbell.svg", FIGURES / "gearbox-lines.svg")
+        loads_over_meshes(scratch / "run")
+        steps = record["cost"]["steps"]
+        text = f"Such a run takes {steps:,} steps of {1e3 * float(DURATION.split()[0]) * 1e3 / steps:.1f} us and {spent:.0f} s of CPU time, columns and warnings included."
+        table = scratch / "table.md"
+        table.write_text(f"<!-- begin teeth that vary -->\n\n{text}\n\n<!-- end -->\n", encoding="utf-8")
+        subprocess.run([HERE / "scripts" / "renew", HERE / "docs" / "gearbox.md", table], check=True)
+
+
+if __name__ == "__main__":
+    main()
