@@ -1,7 +1,7 @@
 // The summary: largest figures as cards, means with error bars and settled marks, of all runs side by side.
 
 import { h, section, table } from './dom.js';
-import { digits, shown } from './units.js';
+import { digits, rpm, shown } from './units.js';
 
 /** Units of the figures by their names. */
 function unitOf(name) {
@@ -79,6 +79,25 @@ function phases(run) {
   return table(heads, rows, { caption: `${run.title}: phases` });
 }
 
+/** Life over the duty of a machine: its bearings under all loads, then under each. */
+function duty(run) {
+  const all = run.record.duty;
+  if (!all) return [];
+  const number = value => (value === null || value === undefined ? '\u2013' : digits(value, 4));
+  const numbers = of => [of.L10r_hours, of.modified_hours, of.static_safety, of.loss, of.damage].map(number);
+  const name = bearing => bearing || 'bearing';
+  const row = (bearing, of) => [name(bearing), of.speed === undefined ? '\u2013' : rpm(of.speed), number(of.equivalent_load), ...numbers(of)];
+  const rows = of => [...Object.entries(of.bearings).map(([bearing, own]) => row(bearing, own)), ...(of.machine ? [row('machine', of.machine)] : [])];
+  const worst = Object.values(all.bearings).map(own => (own.worst ? `${own.worst.load} takes ${digits(100 * own.worst.taken, 2)}\u202f%` : '\u2013'));
+  const heads = ['', 'speed', 'equivalent load [N]', 'L10r [h]', 'modified [h]', 'static safety', 'losses [W]', 'damage'];
+  const hours = all.hours === null ? '' : ` over ${number(all.hours)} h`;
+  const whole = rows(all).map((cells, i) => [...cells, worst[i] ?? '']);
+  return [table([...heads, 'worst load'], whole, { numbers: [1, 2, 3, 4, 5, 6, 7], caption: `${run.title}: duty of ${all.loads.length} loads${hours}, added up by Miner\u2019s rule` }),
+    h('details', {}, h('summary', {}, 'Each load of the duty'), table(['load', 'share', ...heads],
+      all.loads.flatMap(load => rows(load).map(cells => [load.name, `${digits(100 * load.share, 3)}\u202f%`, ...cells])),
+      { numbers: [1, 3, 4, 5, 6, 7, 8, 9], caption: `${run.title}: loads of the duty` }))];
+}
+
 export function summary(runs) {
   return section('summary', 'Summary', runs.length > 1 ? sideBySide(runs) : null, runs.map(of), errorNote(runs));
 }
@@ -109,6 +128,7 @@ function of(run) {
   }
   const inPhases = phases(run);
   if (inPhases) parts.push(inPhases);
+  parts.push(...duty(run));
   parts.push(h('details', {}, h('summary', {}, 'The summary in words'), h('pre', { tabindex: 0 }, run.record.summary_text ?? '')));
   return parts;
 }

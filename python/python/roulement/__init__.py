@@ -14,7 +14,7 @@ import importlib
 from . import catalogue, coupling, load_cases, shaft, vibration
 from .contacts import LAWS, contact
 from .cost import cost
-from .equilibrium import Equilibrium, MachineEquilibrium, equilibrium
+from .equilibrium import Equilibrium, MachineEquilibrium, equilibrium, rating
 from .modes import Modes, Motions, modes
 from .results import Results, run
 from .scene import Scene, cage, effects, package
@@ -40,6 +40,7 @@ __all__ = [
     "load_cases",
     "modes",
     "package",
+    "rating",
     "run",
     "shaft",
     "sweep",
