@@ -14,6 +14,7 @@ use roulement::simulation::machine::Machine;
 use roulement::simulation::system::{MachineEquilibrium, largest_speed};
 use roulement::{Model, scene};
 use roulement_cli::cage;
+use roulement_cli::check::check as check_file;
 use roulement_cli::cost::{Choice, report, study_of};
 use roulement_cli::duty::DutyRating;
 use roulement_cli::duty::loads::Duty;
@@ -169,6 +170,13 @@ impl Scene {
             render(&machine, name, &all).map(|description| description.xml).map_err(runtime)
         })
     }
+}
+
+/// What a file is: kind, lines, and whether it can be run.
+#[pyfunction]
+pub fn check(py: Python<'_>, path: PathBuf) -> (String, Vec<String>, bool) {
+    let found = py.detach(|| check_file(&path));
+    (found.kind, found.lines, found.good)
 }
 
 /// The shared library beside the program, which was built together with this package.
