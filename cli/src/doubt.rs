@@ -38,19 +38,26 @@ type Quantity = (&'static str, &'static str, fn(&Simulation) -> Option<f64>);
 /// Quantities that are told.
 const QUANTITIES: [Quantity; 6] = [
     ("life L10r", "h", |of| {
-        let outputs = of.outputs();
-        let speed = (outputs.inner.twist.angular_velocity - outputs.outer.twist.angular_velocity).norm();
-        Some(outputs.life?.reference * 1e6 * std::f64::consts::TAU / speed / 3600.0)
-            .filter(|life| life.is_finite())
+        let life = of.outputs().life?.reference;
+        Some(life * 1e6 * std::f64::consts::TAU / speed(of) / 3600.0).filter(|life| life.is_finite())
     }),
     ("static safety", "", |of| Some(of.outputs().life?.static_safety)),
-    ("friction torque", "N mm", |of| Some(1e3 * of.outputs().friction_torque.abs())),
+    // What turns it brings the losses: the torque of the first instant is that of balls that have not found their way yet.
+    ("torque", "N mm", |of| {
+        Some(1e3 * of.outputs().losses.total() / speed(of)).filter(|torque| torque.is_finite())
+    }),
     ("losses", "W", |of| Some(of.outputs().losses.total())),
     ("largest ball load", "N", |of| largest(of, |ball| ball.inner.load)),
     ("peak pressure", "MPa", |of| {
         largest(of, |ball| 1e-6 * ball.inner.peak_pressure.max(ball.outer.peak_pressure))
     }),
 ];
+
+/// [rad/s] speed of the races against each other.
+fn speed(of: &Simulation) -> f64 {
+    let outputs = of.outputs();
+    (outputs.inner.twist.angular_velocity - outputs.outer.twist.angular_velocity).norm()
+}
 
 fn largest(of: &Simulation, get: impl Fn(&roulement::effects::reports::BallOutput) -> f64) -> Option<f64> {
     of.outputs().balls.iter().map(get).reduce(f64::max)
