@@ -121,7 +121,7 @@ function duty(run) {
   const rows = of => [...Object.entries(of.bearings).map(([bearing, own]) => row(bearing, own)), ...(of.machine ? [row('machine', of.machine)] : [])];
   const worst = Object.values(all.bearings).map(own => (own.worst ? `${own.worst.load} takes ${digits(100 * own.worst.taken, 2)}\u202f%` : '\u2013'));
   const heads = ['', 'speed', 'equivalent load [N]', 'L10r [h]', 'modified [h]', 'static safety', 'losses [W]', 'damage'];
-  const hours = all.hours === null ? '' : ` over ${number(all.hours)} h`;
+  const hours = all.hours === null ? '' : ` over ${Number(all.hours.toPrecision(6))} h`;
   const whole = rows(all).map((cells, i) => [...cells, worst[i] ?? '']);
   return [table([...heads, 'worst load'], whole, { numbers: [1, 2, 3, 4, 5, 6, 7], caption: `${run.title}: duty of ${all.loads.length} loads${hours}, added up by Miner\u2019s rule` }),
     h('details', {}, h('summary', {}, 'Each load of the duty'), table(['load', 'share', ...heads],
