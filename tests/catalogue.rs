@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use roulement::catalogue::{
-    Bearing, Cage, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, rollers_of, table,
+    Bearing, Cage, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, Shelf, rollers_of, table,
 };
 use roulement::effects::rating::line_contact::Ratings;
 use roulement::effects::rating::standard::Geometry;
@@ -128,6 +128,8 @@ fn published_number_ratings_factors_and_masses_of_the_whole_table() {
         let best = of.candidates().unwrap()[0];
         let geometry = &best.geometry;
         let size = match 1e3 * of.bore {
+            // The largest take fewer balls than fit.
+            165.0.. if of.is_thrust() => 1,
             ..9.5 => 0,
             ..165.0 => 1,
             _ => 2,
@@ -141,7 +143,8 @@ fn published_number_ratings_factors_and_masses_of_the_whole_table() {
             let mass = of.mass(&best) / mass;
             masses = [masses[0].min(mass), masses[1].max(mass)];
         }
-        let size = geometry.ball_diameter / of.section_height();
+        let height = if of.is_thrust() { of.width } else { of.section_height() };
+        let size = geometry.ball_diameter / height;
         sizes = [sizes[0].min(size), sizes[1].max(size)];
         let step = 2.0 * (geometry.ball_diameter / geometry.pitch_diameter).asin();
         if of.is_deep_groove() {
@@ -267,6 +270,142 @@ fn closed_form_ring_between_cylinders() {
         assert!((ring.inertia[0] / polar - 1.0).abs() < 3e-3, "{race}: {:?} {polar}", ring.inertia);
         assert!((ring.inertia[1] / transverse - 1.0).abs() < 6e-3, "{race}: {:?} {transverse}", ring.inertia);
     }
+}
+
+/// Thrust bearings of the whole table: balls that fit, and masses of a maker where they were read (NSK, with flat seat).
+#[test]
+fn published_number_thrust_bearings_of_the_table() {
+    let thrust: Vec<Bearing> = all().filter(Bearing::is_thrust).collect();
+    assert_eq!(thrust.len(), 108);
+    let mut fills = 0.0f64;
+    for of in &thrust {
+        let best = of.candidates().unwrap()[0];
+        assert!(best.error() < 0.015, "{}: {best}", of.designation);
+        let geometry = &best.geometry;
+        let step = 2.0 * (geometry.ball_diameter / geometry.pitch_diameter).asin();
+        fills = fills.max(geometry.balls as f64 * step / TAU);
+    }
+    assert!(fills < 0.95, "{fills}");
+    // kg, of the page of bores from 55 to 100 mm; cages of sheet steel are in it.
+    for (name, published) in [
+        ("51111", 0.227),
+        ("51211", 0.599),
+        ("51311", 1.31),
+        ("51411", 2.58),
+        ("51118", 0.646),
+        ("51320", 4.98),
+    ] {
+        let of = bearing(name);
+        let mass = of.mass(&of.candidates().unwrap()[0]) / published;
+        assert!((0.88..1.08).contains(&mass), "{name}: {mass}");
+    }
+    let read = bearing("SKF 51206 P5");
+    assert_eq!(
+        (read.designation.as_str(), read.ignored.join(", ").as_str()),
+        ("51206", "P5 (tolerance class)")
+    );
+}
+
+const SHELF: &str = r#"
+[[bearing]]
+designation = "HB 7205 X"
+bore = "25 mm"
+outside = "52 mm"
+width = "15 mm"
+dynamic_load_rating = "16 kN"
+static_load_rating = "10 kN"
+contact_angle = "18 deg"
+balls = 14
+ball_diameter = "7.144 mm"
+pitch_diameter = "38.7 mm"
+inner_conformity = 0.525
+outer_conformity = 0.515
+
+[[bearing]]
+designation = "6205"
+bore = "25 mm"
+outside = "52 mm"
+width = "15 mm"
+dynamic_load_rating = "14.1 kN"
+static_load_rating = "7.8 kN"
+diametral_clearance = "3 um"
+"#;
+
+#[test]
+fn bearings_of_an_own_shelf_come_before_the_table() {
+    let shelf = Shelf::parse(SHELF, "catalogue.toml").unwrap();
+    let named = |name: &str| {
+        let request = Request { designation: Some(name.into()), ..Request::default() };
+        request.of_shelf(&shelf).unwrap()
+    };
+    // What its maker tells is in the scene, to the last digit.
+    let own = named("hb7205x");
+    let text = own.scene(1).unwrap();
+    let scene = Scene::parse(&text).unwrap();
+    let of = &scene.bearing;
+    for line in [
+        "balls = 14",
+        "ball_diameter = \"7.144 mm\"",
+        "pitch_diameter = \"38.7 mm\"",
+        "inner_conformity = 0.525",
+        "outer_conformity = 0.515",
+    ] {
+        assert!(text.lines().any(|own| own == line), "{line}\n{text}");
+    }
+    assert!((of.contact_angle.unwrap().0 - 18f64.to_radians()).abs() < 1e-12);
+    assert!(!text.contains("estimated from C") && text.contains("of catalogue.toml"), "{text}");
+    Simulation::new(&scene).unwrap();
+    // A name of the table with other numbers; another name is that of the table.
+    let other = named("6205");
+    assert_eq!((other.dynamic_load_rating, other.source.as_str()), (14100.0, "catalogue.toml"));
+    assert_eq!(Scene::parse(&other.scene(1).unwrap()).unwrap().bearing.diametral_clearance.unwrap().0, 3e-6);
+    assert_eq!(named("6206").dynamic_load_rating, bearing("6206").dynamic_load_rating);
+    // Refused with file, bearing, key, value and range.
+    for (from, to, parts) in [
+        ("balls = 14", "balls = 40", &["catalogue.toml", "HB 7205 X", "balls = 40", "[3, 16]"][..]),
+        ("\"7.144 mm\"", "\"71 mm\"", &["ball_diameter = 0.071", "allowed is [0.002"]),
+        ("0.525", "0.4", &["inner_conformity = 0.4", "[0.501, 1]"]),
+        ("balls = 14\n", "", &["balls is missing"]),
+        ("pitch_diameter = \"38.7 mm\"", "pitch = 1", &["pitch", "line"]),
+        ("\"38.7 mm\"", "\"20 mm\"", &["pitch_diameter = 0.02", "[0.025, 0.052]"]),
+        ("\"3 um\"", "\"3 mm\"", &["6205", "diametral_clearance = 0.003", "[-0.001, 0.001]"]),
+        ("\"6205\"", "\"HB 7205X\"", &["that of another one"]),
+        ("\"18 deg\"", "\"60 deg\"", &["contact_angle = 60 deg", "[0, 45] deg"]),
+        ("bore = \"25 mm\"", "boer = \"25 mm\"", &["catalogue.toml", "boer"]),
+    ] {
+        let text = SHELF.replacen(from, to, 1);
+        let why = Shelf::parse(&text, "catalogue.toml").unwrap_err().to_string();
+        for part in parts {
+            assert!(why.contains(part), "{to}: {why}\nshould have {part}");
+        }
+    }
+    let beside =
+        Request { designation: Some("6205".into()), clearance: Some("C3".into()), ..Request::default() };
+    let why = beside.of_shelf(&shelf).unwrap_err().to_string();
+    assert!(why.contains("6205 has its numbers in catalogue.toml"), "{why}");
+}
+
+#[test]
+fn bearings_of_machines_are_looked_up_on_the_shelf_beside_their_file() {
+    let folder = std::env::temp_dir().join(format!("roulement-shelf-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("catalogue.toml"), SHELF).unwrap();
+    let machine = "[shaft]\nspeed = \"3000 rpm\"\nmass = \"1 kg\"\npolar_inertia = 1e-3\ntransverse_inertia = 2e-3\n[[bearing]]\n\
+                   name = \"a\"\ncatalogue = \"HB 7205 X\"\nmounting = { position = 0 }\n[[bearing]]\nname = \"b\"\ncatalogue = \"6205\"\n\
+                   mounting = { position = \"80 mm\", axial = \"free\" }\n[load]\nduration = \"1 ms\"\noutput_interval = \"1 ms\"\n";
+    std::fs::write(folder.join("machine.toml"), machine).unwrap();
+    let found = SystemScene::load(&folder.join("machine.toml"));
+    let elsewhere = SystemScene::edited(machine);
+    std::fs::remove_dir_all(&folder).unwrap();
+    let found = found.unwrap();
+    assert_eq!(found.bearings[0].scene.bearing.balls, 14);
+    assert_eq!(found.bearings[1].scene.bearing.diametral_clearance.unwrap().0, 3e-6);
+    // Its text stands alone: without the shelf it is the same.
+    let alone = SystemScene::edited(&found.source).unwrap();
+    assert_eq!(alone.bearings[0].scene.bearing.balls, 14);
+    // A text alone has the table.
+    let why = elsewhere.unwrap_err().to_string();
+    assert!(why.contains("HB 7205 X") && why.contains("not in the table"), "{why}");
 }
 
 #[test]
@@ -575,7 +714,11 @@ fn errors_name_what_was_given_and_what_is_allowed() {
         ),
         ("designation = \"32008 X/Q\"".into(), vec!["tapered roller bearing"]),
         ("designation = \"22210E\"".into(), vec!["spherical roller bearing"]),
-        ("designation = \"51105\"".into(), vec!["thrust ball bearing"]),
+        ("designation = \"52205\"".into(), vec!["thrust ball bearing"]),
+        (
+            "designation = \"51405 C3\"\nclearance = \"C3\"".into(),
+            vec!["clearance", "thrust bearing has its contact angle"],
+        ),
         ("designation = \"QJ 206\"".into(), vec!["four-point contact"]),
         ("designation = \"3205 A\"".into(), vec!["double-row angular contact"]),
         ("designation = \"1205 ETN9\"".into(), vec!["self-aligning ball"]),
@@ -587,7 +730,7 @@ fn errors_name_what_was_given_and_what_is_allowed() {
         (format!("{six}outside = \"20 mm\""), vec!["outside = 20 mm", "[28.75, 125] mm"]),
         (format!("{six}bore = \"25 kg\""), vec!["bore", "25 kg", "kg measures something else"]),
         (format!("{six}boer = 1"), vec!["boer"]),
-        (format!("{six}contact_angle = \"60 deg\""), vec!["contact_angle = 60", "[0, 45] deg"]),
+        (format!("{six}contact_angle = \"60 deg\""), vec!["contact_angle = 60", "[0, 45] deg, or 90 deg"]),
     ] {
         let why: CatalogueError = match Request::parse(&text).and_then(|request| request.bearing()) {
             Err(why) => why,

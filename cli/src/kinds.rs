@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use toml::Table;
+use toml::{Table, Value};
 
 /// Bytes of a file whose kind is told at most.
 const LARGEST: u64 = 64 << 20;
@@ -15,6 +15,8 @@ pub enum Kind {
     Bearing,
     /// A machine: shafts with their bearings.
     Machine,
+    /// Bearings of one's own catalogue.
+    Shelf,
     /// Cases of a scene.
     Sweep,
     /// Connected packages.
@@ -54,6 +56,8 @@ impl Kind {
             Some(Self::System)
         } else if has(&["shaft"]) {
             Some(Self::Machine)
+        } else if table.len() == 1 && table.get("bearing").is_some_and(Value::is_array) {
+            Some(Self::Shelf)
         } else if has(&["bearing", "ball", "race"]) {
             Some(Self::Bearing)
         } else {
@@ -67,6 +71,7 @@ impl Kind {
             Self::Bearing | Self::Machine => {
                 "check, run, equilibrium, effects, rating, modes, field, cost, describe, fmu"
             }
+            Self::Shelf => "check; bearing and machines look it up by its name, catalogue.toml",
             Self::Sweep => "check, sweep",
             Self::System => "check, system",
             Self::Rexs => "check, import",
@@ -82,6 +87,7 @@ impl fmt::Display for Kind {
         to.write_str(match self {
             Self::Bearing => "the scene of a bearing",
             Self::Machine => "a machine: shafts with their bearings",
+            Self::Shelf => "a shelf of bearings, one's own catalogue",
             Self::Sweep => "a sweep: cases of a scene",
             Self::System => "the description of a system of packages",
             Self::Rexs => "a gearbox in REXS",

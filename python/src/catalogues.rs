@@ -1,25 +1,28 @@
 //! Catalogue bearings as texts of scenes.
 
+use std::path::PathBuf;
+
 use pyo3::prelude::*;
-use roulement::catalogue::{Bearing, Request, table};
+use roulement::catalogue::{Bearing, Request, Shelf, table};
 use serde_json::json;
 
-use crate::failures::value;
+use crate::failures::{scene as refused, value};
 
-fn bearing(request: &str) -> PyResult<Bearing> {
-    Request::parse(request).and_then(|request| request.bearing()).map_err(value)
+fn bearing(request: &str, shelf: Option<PathBuf>) -> PyResult<Bearing> {
+    let shelf = shelf.map(|path| Shelf::load(&path)).transpose().map_err(refused)?.unwrap_or_default();
+    Request::parse(request).and_then(|request| request.of_shelf(&shelf)).map_err(value)
 }
 
 /// The scene of a bearing, as text; the request is TOML.
 #[pyfunction]
-pub fn catalogue_scene(request: &str, candidate: usize) -> PyResult<String> {
-    bearing(request)?.scene(candidate).map_err(value)
+pub fn catalogue_scene(request: &str, candidate: usize, shelf: Option<PathBuf>) -> PyResult<String> {
+    bearing(request, shelf)?.scene(candidate).map_err(value)
 }
 
 /// Balls that come near its ratings, as JSON.
 #[pyfunction]
-pub fn catalogue_candidates(request: &str) -> PyResult<String> {
-    let bearing = bearing(request)?;
+pub fn catalogue_candidates(request: &str, shelf: Option<PathBuf>) -> PyResult<String> {
+    let bearing = bearing(request, shelf)?;
     let candidates = bearing.candidates().map_err(value)?;
     let rows: Vec<_> = candidates
         .iter()

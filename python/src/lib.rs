@@ -27,7 +27,7 @@ mod _native {
     #[pymodule_export]
     use crate::runs::{run, write_parquet};
     #[pymodule_export]
-    use crate::scenes::{Scene, cost, library_beside, package};
+    use crate::scenes::{Scene, check, cost, library_beside, package};
     #[pymodule_export]
     use crate::simulations::{Simulation, State};
     #[pymodule_export]

@@ -14,7 +14,11 @@ use roulement::simulation::machine::Machine;
 use roulement::simulation::system::{MachineEquilibrium, largest_speed};
 use roulement::{Model, scene};
 use roulement_cli::cage;
+use roulement_cli::check::check as check_file;
 use roulement_cli::cost::{Choice, report, study_of};
+use roulement_cli::duty::DutyRating;
+use roulement_cli::duty::loads::Duty;
+use roulement_cli::duty::say::with_duty;
 use roulement_cli::package::{library_beside as built_with, write_fmu};
 use roulement_cli::report::json;
 use roulement_cli::sweep::all::threads;
@@ -88,7 +92,9 @@ impl Scene {
             }
         };
         py.detach(|| {
-            let scene = match self.resolved()? {
+            let scene = self.resolved()?;
+            let duty = DutyRating::of_scene(&scene, threads()).map_err(runtime)?;
+            let scene = match scene {
                 MachineScene::Bearing(scene) => scene,
                 MachineScene::Shaft(_) if !by_friction => {
                     return Err(value(
@@ -98,7 +104,7 @@ impl Scene {
                 MachineScene::Shaft(scene) => {
                     let found =
                         MachineEquilibrium::of(&scene, 0.0, largest_speed(&scene)).map_err(runtime)?;
-                    return Ok(found.to_json().to_string());
+                    return Ok(with_duty(found.to_json(), duty.as_ref()).to_string());
                 }
             };
             let model = Model::new(&scene).map_err(runtime)?;
@@ -106,7 +112,20 @@ impl Scene {
             let solution = equilibrium::solve(&model, &input).map_err(runtime)?;
             let mut report = solution.to_json();
             report["peak_pressure"] = solution.peak_pressure(&model).into();
-            Ok(report.to_string())
+            Ok(with_duty(report, duty.as_ref()).to_string())
+        })
+    }
+
+    /// Rating under the loads of a table, or over its own duty, as JSON.
+    fn rating(&self, py: Python<'_>, loads: Option<PathBuf>) -> PyResult<String> {
+        py.detach(|| {
+            let scene = self.resolved()?;
+            let duty = match &loads {
+                Some(path) => Duty::of_table(path, &scene),
+                None => Duty::of_scene(&scene),
+            };
+            let rating = DutyRating::of(&duty.map_err(value)?, threads()).map_err(runtime)?;
+            Ok(rating.to_json().to_string())
         })
     }
 
@@ -151,6 +170,13 @@ impl Scene {
             render(&machine, name, &all).map(|description| description.xml).map_err(runtime)
         })
     }
+}
+
+/// What a file is: kind, lines, and whether it can be run.
+#[pyfunction]
+pub fn check(py: Python<'_>, path: PathBuf) -> (String, Vec<String>, bool) {
+    let found = py.detach(|| check_file(&path));
+    (found.kind, found.lines, found.good)
 }
 
 /// The shared library beside the program, which was built together with this package.

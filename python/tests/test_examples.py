@@ -18,6 +18,7 @@ EXAMPLES = {
     "two_bearing_shaft": ["tilt"],
     "friction_map": ["kalker_table"],
     "surrogate": ["largest error"],
+    "dry_running": ["friction 0.3, 8 um, 3.0 W/K: clearance", "4.2 GPa"],
     "ross_rotor": ["radial stiffness", "18000 rpm"],
 }
 ENVIRONMENT = {**os.environ, "ROULEMENT_BIN": str(PROGRAM)}

@@ -10,7 +10,7 @@ import { assemble, likes, words as machineWords, machineSection, cards as machin
 import { shaftDrawing } from './shaft.js';
 import { orbits } from './orbits.js';
 import { polar } from './polar.js';
-import { plotsSection, startPlots, setZoom } from './plots.js';
+import { drawAll, plotsSection, startPlots, setZoom } from './plots.js';
 import { spectra } from './spectra.js';
 import { power } from './power.js';
 import { contacts } from './contact.js';
@@ -60,6 +60,7 @@ async function start() {
   // A case whose whole run was kept is shown by itself.
   const sweepParts = sweeps.map((sweep, i) => sweepSection(sweep, i, run => (run ? show(run, [run]) : show(runs[0]))));
   show(runs[0]);
+  openOnPaper();
   // For tests: what is there, and that it is.
   window.roulement = { runs, sweeps, clock, setZoom, ready: true };
 }
@@ -80,12 +81,24 @@ function head(runs, sweeps, show) {
     `inner ${rpm(run.bearing.speeds.inner.most)}`, `${withUnit(run.end - run.begin, 'time', 's')} simulated`].join(' \u00b7 ') : `${sweeps.reduce((sum, sweep) => sum + sweep.count, 0)} cases`;
   return h('header', {}, h('div', {}, h('h1', {}, title), h('p', {}, words)),
     h('div', { class: 'row' }, runs.length > 1 ? choice('Run that is shown', runs.map((other, i) => [i, other.name || `run ${i + 1}`]), 0, i => show(runs[i])) : null,
+      h('button', { type: 'button', id: 'print', onclick: () => print() }, 'Print'),
       h('button', { type: 'button', id: 'theme', onclick: toggleTheme, 'aria-label': 'Dark or light' }, '\u25d0')));
 }
 
 function sceneText(run) {
   return h('section', { id: 'scene', 'aria-labelledby': 'scene-title' }, h('h2', { id: 'scene-title' }, 'Scene file'),
     h('details', {}, h('summary', {}, 'The text that was simulated'), h('pre', { tabindex: 0 }, run.record.scene)));
+}
+
+/** On paper all that is folded stands open, but for licences; afterwards it is as it was. */
+function openOnPaper() {
+  let opened = [];
+  addEventListener('beforeprint', () => {
+    opened = [...document.querySelectorAll('details:not([open]):not(.licences)')];
+    opened.forEach(part => { part.open = true; });
+    drawAll();
+  });
+  addEventListener('afterprint', () => opened.forEach(part => { part.open = false; }));
 }
 
 /** Texts of what the page is made with (LICENCES is put in by the build). */

@@ -167,6 +167,11 @@ const seen = new IntersectionObserver(changes => {
   }
 }, { rootMargin: '200px' });
 
+/** Makes all plots of the page at once, for paper. */
+export function drawAll() {
+  for (const holder of document.querySelectorAll('.plot')) if (holder.entry && !holder.entry.plot) make(holder.entry);
+}
+
 function strokeOf(curve, i, count) {
   if (curve.ball) return ballColour(curve.ball, curve.run.bearing.balls);
   return count > 7 ? ballColour(i + 1, count) : colour(curve.dash !== undefined ? i % Math.max(1, count) : i);

@@ -1,7 +1,7 @@
 // The summary: largest figures as cards, means with error bars and settled marks, of all runs side by side.
 
 import { h, section, table } from './dom.js';
-import { digits, shown } from './units.js';
+import { digits, rpm, shown } from './units.js';
 
 /** Units of the figures by their names. */
 function unitOf(name) {
@@ -17,6 +17,37 @@ function unitOf(name) {
   if (/slip|over /.test(name)) return 'share';
   if (/speed/.test(name)) return 'rad/s';
   return 'J';
+}
+
+/** Groups that quantities are told in, and what belongs to them by its name; the first that fits. */
+const GROUPS = [['Life', /life|L10|damage|safety/], ['Losses', /power|loss|torque|heat|put in|to bearings|damped|balance|energy/], ['Loads', /force|moment|load|pressure|between balls|over /],
+  ['Motion', /./]];
+const ORDER = ['Loads', 'Motion', 'Losses', 'Life'];
+
+/** Rows under the heads of their groups: `of` is the quantity of each. */
+function grouped(rows, of) {
+  const groupOf = name => GROUPS.find(([, words]) => words.test(name))[0];
+  return ORDER.flatMap(group => {
+    const own = rows.filter((_, i) => groupOf(of[i]) === group);
+    return own.length ? [[h('strong', { class: 'group' }, group)], ...own] : [];
+  });
+}
+
+/** What the run was given, for a reader on paper. */
+function inputs(run) {
+  const { bearing: of } = run;
+  if (!of) return null;
+  const millimetres = length => `${digits(length * 1e3, 5)} mm`;
+  const span = ({ start, least, most }, show) => (least === most ? show(start) : `${show(start)} at the start, ${show(least)} to ${show(most)}`);
+  const units = { x: ['N', 1, 'm'], y: ['N', 1, 'm'], z: ['N', 1, 'm'], ry: ['N\u202fm', 1, 'rad'], rz: ['N\u202fm', 1, 'rad'] };
+  const loads = ['inner', 'outer'].flatMap(race => Object.entries(of.loads[race] ?? {}).map(([direction, given]) =>
+    [`${given.kind === 'load' ? 'load' : 'motion'} ${direction} of the ${race} race`, span(given, value => `${digits(value, 4)} ${units[direction][given.kind === 'load' ? 0 : 2]}`)]));
+  const rows = [['balls', String(of.balls)], ['ball diameter', millimetres(of.ball_diameter)], ['pitch diameter', millimetres(of.pitch_diameter)],
+    of.clearance === null ? ['contact angle', `${digits(of.contact_angle * 180 / Math.PI, 4)}\u00b0`] : ['diametral clearance', `${digits(of.clearance * 1e6, 4)} \u00b5m`],
+    ['groove radius over ball diameter, inner and outer', `${digits(of.inner.conformity, 4)}, ${digits(of.outer.conformity, 4)}`],
+    ['friction coefficient of balls and races', span(of.friction, value => digits(value, 3))], ['creep law', of.creep],
+    ...['inner', 'outer'].map(race => [`speed of the ${race} race`, span(of.speeds[race], rpm)]), ...loads, ['simulated time', `${digits(of.duration * 1e3, 4)} ms`]];
+  return h('details', { id: 'inputs' }, h('summary', {}, 'What the run was given'), table(['input', 'value'], rows, { caption: `${run.title}: inputs` }));
 }
 
 /** A figure with its unit and error bar. */
@@ -79,6 +110,25 @@ function phases(run) {
   return table(heads, rows, { caption: `${run.title}: phases` });
 }
 
+/** Life over the duty of a machine: its bearings under all loads, then under each. */
+function duty(run) {
+  const all = run.record.duty;
+  if (!all) return [];
+  const number = value => (value === null || value === undefined ? '\u2013' : digits(value, 4));
+  const numbers = of => [of.L10r_hours, of.modified_hours, of.static_safety, of.loss, of.damage].map(number);
+  const name = bearing => bearing || 'bearing';
+  const row = (bearing, of) => [name(bearing), of.speed === undefined ? '\u2013' : rpm(of.speed), number(of.equivalent_load), ...numbers(of)];
+  const rows = of => [...Object.entries(of.bearings).map(([bearing, own]) => row(bearing, own)), ...(of.machine ? [row('machine', of.machine)] : [])];
+  const worst = Object.values(all.bearings).map(own => (own.worst ? `${own.worst.load} takes ${digits(100 * own.worst.taken, 2)}\u202f%` : '\u2013'));
+  const heads = ['', 'speed', 'equivalent load [N]', 'L10r [h]', 'modified [h]', 'static safety', 'losses [W]', 'damage'];
+  const hours = all.hours === null ? '' : ` over ${Number(all.hours.toPrecision(6))} h`;
+  const whole = rows(all).map((cells, i) => [...cells, worst[i] ?? '']);
+  return [table([...heads, 'worst load'], whole, { numbers: [1, 2, 3, 4, 5, 6, 7], caption: `${run.title}: duty of ${all.loads.length} loads${hours}, added up by Miner\u2019s rule` }),
+    h('details', {}, h('summary', {}, 'Each load of the duty'), table(['load', 'share', ...heads],
+      all.loads.flatMap(load => rows(load).map(cells => [load.name, `${digits(100 * load.share, 3)}\u202f%`, ...cells])),
+      { numbers: [1, 3, 4, 5, 6, 7, 8, 9], caption: `${run.title}: loads of the duty` }))];
+}
+
 export function summary(runs) {
   return section('summary', 'Summary', runs.length > 1 ? sideBySide(runs) : null, runs.map(of), errorNote(runs));
 }
@@ -98,7 +148,7 @@ function of(run) {
       return [mean.quantity, show(mean.mean, 6), factorOf[1], show(mean.interval_95, 2), show(mean.error, 2), show(mean.drift, 2), mark(mean)];
     });
     const [begin, end] = means.window;
-    const all = table(['mean of', 'value', 'unit', '\u00b1 95 %', 'numerical error', 'drift', ''], rows,
+    const all = table(['mean of', 'value', 'unit', '\u00b1 95 %', 'numerical error', 'drift', ''], grouped(rows, means.quantities.map(mean => mean.quantity)),
       { numbers: [1, 3, 4, 5], caption: `${run.title}: means over ${digits(begin * 1e3, 4)} to ${digits(end * 1e3, 4)} ms` });
     // A shaft has some for each of its places.
     const drift = means.quantities.filter(mean => mean.settled === false).length;
@@ -109,6 +159,9 @@ function of(run) {
   }
   const inPhases = phases(run);
   if (inPhases) parts.push(inPhases);
+  parts.push(...duty(run));
+  const given = inputs(run);
+  if (given) parts.push(given);
   parts.push(h('details', {}, h('summary', {}, 'The summary in words'), h('pre', { tabindex: 0 }, run.record.summary_text ?? '')));
   return parts;
 }
@@ -128,7 +181,7 @@ function losses(run) {
 function sideBySide(runs) {
   const names = [...new Set(runs.flatMap(run => Object.keys(run.record.summary.figures)))];
   const rows = names.map(name => [name, ...runs.map(run => figure(name, run.record.summary.figures[name], run.record.summary.error_bars?.[name]))]);
-  const all = table(['figure', ...runs.map(run => run.name || run.title)], rows, { numbers: runs.map((_, i) => i + 1), caption: 'All runs side by side' });
+  const all = table(['figure', ...runs.map(run => run.name || run.title)], grouped(rows, names), { numbers: runs.map((_, i) => i + 1), caption: 'All runs side by side' });
   return runs[0].shaft ? h('details', {}, h('summary', {}, `All ${rows.length} figures side by side`), all) : all;
 }
 

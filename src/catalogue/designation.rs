@@ -123,7 +123,7 @@ const TAPERED: &str = "a tapered roller bearing";
 const SERIES: [(&str, usize, &[&str]); 10] = [
     (TAPERED, 5, &["302", "303", "313", "320", "322", "323", "329", "330", "331", "332"]),
     ("a spherical roller bearing", 5, &["213", "222", "223", "230", "231", "232", "238", "239", "240", "241"]),
-    ("a thrust ball bearing", 5, &["510", "511", "512", "513", "514", "522", "523", "524", "532", "533", "534"]),
+    ("a thrust ball bearing", 5, &["510", "522", "523", "524", "532", "533", "534"]),
     ("a thrust cylindrical roller bearing", 5, &["811", "812", "893", "894"]),
     ("a spherical roller thrust bearing", 5, &["292", "293", "294"]),
     ("a self-aligning ball bearing", 4, &["12", "13", "22", "23"]),
@@ -284,6 +284,7 @@ pub(super) fn find(name: &str) -> Result<Named, CatalogueError> {
     let mut rest =
         std::iter::once(head.rest.as_str()).chain(behind[1..].iter().copied()).collect::<Vec<_>>().join(" ");
     let angular = number.starts_with('7');
+    let thrust = number.starts_with("51");
     let designation = match angular {
         true => format!("{number} {}", head.angle(&mut rest)),
         false => number.clone(),
@@ -309,6 +310,9 @@ pub(super) fn find(name: &str) -> Result<Named, CatalogueError> {
             match part {
                 Part::Class(_) if angular => {
                     named.ignored.push(ignore(text, "clearance of an angular-contact bearing"));
+                }
+                Part::Class(_) if thrust => {
+                    named.ignored.push(ignore(text, "clearance, which a thrust bearing has none of"));
                 }
                 Part::Class(class) => named.clearance = Some(class),
                 Part::Hybrid => named.hybrid = true,

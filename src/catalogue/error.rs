@@ -11,8 +11,8 @@ pub enum CatalogueError {
     /// A name that the table lacks.
     #[error(
         "{name} is not in the table, which has {}deep groove 60, 62, 63, 160, 618, 619 (bores of 10 to 200 mm) and 60x to 69x (3 to 9 mm) \
-         and angular contact 70, 72, 73 and 719 with A (30 deg), AC (25 deg), B (40 deg), C (15 deg) as a maker has them (`roulement bearing \
-         --list`); give bore, outside, width, dynamic_load_rating and static_load_rating instead",
+         and angular contact 70, 72, 73 and 719 with A (30 deg), AC (25 deg), B (40 deg), C (15 deg) and thrust 511 to 514 as a maker has them \
+         (`roulement bearing --list`); give bore, outside, width, dynamic_load_rating and static_load_rating instead",
         if near.is_empty() { String::new() } else { format!("{near}; ") }
     )]
     Unknown {
@@ -23,7 +23,7 @@ pub enum CatalogueError {
     },
     /// A name of a bearing that is not of balls in one row and one arc.
     #[error(
-        "{name} is {kind}: only single-row deep-groove and angular-contact ball bearings are simulated ball by ball; a machine can have N, NU, NJ \
+        "{name} is {kind}: only single-row deep-groove, angular-contact and single-direction thrust ball bearings are simulated ball by ball; a machine can have N, NU, NJ \
          and NUP of the series 10, 2, 22, 3 and 23, tapered ones of 302, 303, 313, 320, 322, 323 and 330, and K with its three dimensions as catalogue \
          of a [[bearing]], rollers of other sizes by [bearing.rollers], and any by its stiffness ([bearing.stiffness])"
     )]

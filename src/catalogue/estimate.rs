@@ -15,7 +15,9 @@ pub(super) const USUAL: [f64; 2] = [0.52, 0.53];
 /// [-] outer conformity of makers whose C0 is that of the inner race alone. It matters where the ball is small against the pitch
 /// circle: there ISO 76 has the outer race with 0.53 as the weaker one.
 const CLOSE: f64 = 0.52;
-/// [-] ball diameters over the height of the section; those of the table are 0.43 to 0.67.
+/// [-] conformity of thrust bearings that the tables of the standards hold to, which ISO 76 is of.
+const OF_THRUST: f64 = 0.54;
+/// [-] ball diameters over the height of the section, of a thrust bearing over its own; those of the table are 0.43 to 0.67.
 const SIZES: [f64; 2] = [0.35, 0.75];
 /// \[rad] most that balls fill, from the centre of the first to that of the last, where they are put in between eccentric rings; those
 /// of the table fill 153 to 205 degrees.
@@ -66,12 +68,35 @@ fn static_load_rating(geometry: &Geometry, loads: [f64; 2]) -> f64 {
 }
 
 impl Bearing {
-    /// Balls that come near its ratings, the nearest first.
+    /// [-] conformities that are taken where none are known.
+    pub(super) fn usual_conformities(&self) -> [f64; 2] {
+        if self.is_thrust() { [OF_THRUST; 2] } else { USUAL }
+    }
+
+    /// Balls with their ratings, and how far these are from its own; loads of a ball \[N] on both races that leave a mark.
+    pub(super) fn rated(&self, geometry: Geometry, loads: [f64; 2]) -> Candidate {
+        let dynamic = geometry.dynamic_load_rating();
+        let static_ = static_load_rating(&geometry, loads);
+        Candidate {
+            geometry,
+            dynamic_load_rating: dynamic,
+            static_load_rating: static_,
+            errors: [dynamic / self.dynamic_load_rating - 1.0, static_ / self.static_load_rating - 1.0],
+        }
+    }
+
+    /// Balls that come near its ratings, the nearest first; those that its maker tells, alone.
     ///
     /// # Errors
     /// If none comes near.
     pub fn candidates(&self) -> Result<Vec<Candidate>, CatalogueError> {
-        let (pitch, height) = (self.pitch_diameter(), self.section_height());
+        let pitch = self.pitch_diameter();
+        let height = if self.is_thrust() { self.width } else { self.section_height() };
+        if let Some(inside) = self.inside {
+            return Ok(vec![inside]);
+        }
+        let [inner, usual] = self.usual_conformities();
+        let outers = if self.is_thrust() { &[usual][..] } else { &[usual, CLOSE][..] };
         let mut found = vec![];
         for ball_diameter in ball_diameters() {
             if !(SIZES[0] * height..=SIZES[1] * height).contains(&ball_diameter) {
@@ -83,28 +108,17 @@ impl Bearing {
             } else {
                 FILL_OF_ANGULAR_CONTACT * 2.0 * PI / step
             };
-            for outer in [USUAL[1], CLOSE] {
+            for &outer in outers {
                 let of = |balls| Geometry {
                     balls,
                     ball_diameter,
                     pitch_diameter: pitch,
                     contact_angle: self.contact_angle,
-                    conformities: [USUAL[0], outer],
+                    conformities: [inner, outer],
                 };
                 let loads = of(1).static_ball_loads(STEEL_OF_ISO_76);
                 for balls in 3..=most as usize {
-                    let geometry = of(balls);
-                    let dynamic = geometry.dynamic_load_rating();
-                    let static_ = static_load_rating(&geometry, loads);
-                    found.push(Candidate {
-                        geometry,
-                        dynamic_load_rating: dynamic,
-                        static_load_rating: static_,
-                        errors: [
-                            dynamic / self.dynamic_load_rating - 1.0,
-                            static_ / self.static_load_rating - 1.0,
-                        ],
-                    });
+                    found.push(self.rated(of(balls), loads));
                 }
                 if loads[1] >= loads[0] {
                     // The inner race is the weaker one anyway.

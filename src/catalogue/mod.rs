@@ -29,8 +29,11 @@ mod estimate;
 mod request;
 mod rings;
 mod rollers;
+mod shelf;
 mod table;
 mod text;
+
+use std::path::Path;
 
 pub use clearance::Clearance;
 pub use error::CatalogueError;
@@ -38,6 +41,7 @@ pub use estimate::{Candidate, STEEL_OF_ISO_76};
 pub use request::{Cage, Request};
 pub use rings::Ring;
 pub use rollers::rollers_of;
+pub use shelf::{FILE, Shelf};
 pub use table::{SOURCE, table};
 
 /// A row of the table of common sizes.
@@ -55,7 +59,7 @@ pub struct Entry {
     pub dynamic: f64,
     /// \[kN] basic static load rating C0.
     pub static_: f64,
-    /// \[deg] contact angle; 0 of deep-groove bearings.
+    /// \[deg] contact angle; 0 of deep-groove bearings, 90 of thrust bearings.
     pub contact_angle: f64,
 }
 
@@ -76,7 +80,7 @@ pub struct Bearing {
     pub dynamic_load_rating: f64,
     /// \[N] basic static load rating C0.
     pub static_load_rating: f64,
-    /// \[rad] nominal contact angle; 0 is a deep-groove bearing, whose contact angle is that of its clearance.
+    /// \[rad] nominal contact angle; 0 is a deep-groove bearing, whose contact angle is that of its clearance, a right angle a thrust bearing.
     pub contact_angle: f64,
     /// Class of the radial clearance of a deep-groove bearing.
     pub clearance: Clearance,
@@ -86,12 +90,21 @@ pub struct Bearing {
     pub cage: Cage,
     /// Parts of its designation that no scene has, with their meaning.
     pub ignored: Vec<String>,
+    /// Balls and grooves that its maker tells; they are estimated without.
+    pub inside: Option<Candidate>,
+    /// \[m] diametral clearance in place of its class.
+    pub own_clearance: Option<f64>,
 }
 
 impl Bearing {
     /// Is it a deep-groove bearing?
     pub fn is_deep_groove(&self) -> bool {
         self.contact_angle == 0.0
+    }
+
+    /// Is it a thrust bearing, two washers with a groove each?
+    pub fn is_thrust(&self) -> bool {
+        self.contact_angle == std::f64::consts::FRAC_PI_2
     }
 
     /// \[m] pitch diameter: midway between bore and outside diameter.
@@ -105,13 +118,14 @@ impl Bearing {
     }
 }
 
-/// Scene of a bearing by its designation, as a text, and the mass of its outer ring \[kg].
+/// Scene of a bearing by its designation, as a text, and the mass of its outer ring \[kg]; one of the shelf beside a scene comes before the table.
 ///
 /// # Errors
-/// If there is no such bearing, in words.
-pub fn scene_of(designation: &str) -> Result<(String, f64), String> {
+/// If there is no such bearing, or the shelf is refused, in words.
+pub fn scene_of(designation: &str, beside: Option<&Path>) -> Result<(String, f64), String> {
+    let shelf = beside.map(Shelf::beside).transpose().map_err(|why| why.to_string())?.unwrap_or_default();
     let request = Request { designation: Some(designation.into()), ..Request::default() };
-    let bearing = request.bearing().map_err(|why| why.to_string())?;
+    let bearing = request.of_shelf(&shelf).map_err(|why| why.to_string())?;
     let found = bearing.scene(1).and_then(|scene| Ok((scene, bearing.outer_ring_mass()?)));
     found.map_err(|why| why.to_string())
 }

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::designation::find;
 use super::digits::short;
-use super::{Bearing, CatalogueError, Clearance, Entry, SOURCE};
+use super::{Bearing, CatalogueError, Clearance, Entry, SOURCE, Shelf};
 use crate::schema::units::{Angle, Force, Length};
 
 /// A bearing by name, by numbers, or both: numbers that are given stand in place of those of the table.
@@ -23,7 +23,7 @@ pub struct Request {
     pub dynamic_load_rating: Option<Force>,
     /// \[N] basic static load rating C0.
     pub static_load_rating: Option<Force>,
-    /// \[rad] contact angle; 0 is a deep-groove bearing.
+    /// \[rad] contact angle; 0 is a deep-groove bearing, 90 degrees a thrust bearing.
     pub contact_angle: Option<Angle>,
     /// Class of the radial clearance of a deep-groove bearing: C2, CN, C3, C4, C5.
     pub clearance: Option<String>,
@@ -58,6 +58,23 @@ impl Request {
         })
     }
 
+    /// The bearing that is asked for, by its name on a shelf or else in the table.
+    ///
+    /// # Errors
+    /// As [`Request::bearing`], and if numbers or a clearance are given beside a name of the shelf, which has its own.
+    pub fn of_shelf(&self, shelf: &Shelf) -> Result<Bearing, CatalogueError> {
+        let Some(own) = self.designation.as_deref().and_then(|name| shelf.find(name)) else {
+            return self.bearing();
+        };
+        let by_name = Self { designation: self.designation.clone(), cage: self.cage, ..Self::default() };
+        if *self != by_name {
+            let why = format!("{} has its numbers in {}: change them there", own.designation, own.source);
+            return Err(CatalogueError::Conflict(why));
+        }
+        let cage = if self.cage == Cage::default() { own.cage } else { self.cage };
+        Ok(Bearing { cage, ..own.clone() })
+    }
+
     /// The bearing that is asked for.
     ///
     /// # Errors
@@ -76,7 +93,7 @@ impl Request {
         };
         if contact_angle != 0.0 && class.is_some() {
             return Err(CatalogueError::Conflict(
-                "clearance: classes are of deep-groove bearings; an angular-contact bearing has its contact angle instead".into(),
+                "clearance: classes are of deep-groove bearings; an angular-contact or thrust bearing has its contact angle instead".into(),
             ));
         }
         let by_name = Self {
@@ -108,6 +125,8 @@ impl Request {
             hybrid: named.as_ref().is_some_and(|named| named.hybrid),
             cage: self.cage,
             ignored: named.map(|named| named.ignored).unwrap_or_default(),
+            inside: None,
+            own_clearance: None,
         };
         bearing.check()?;
         Ok(bearing)
@@ -133,14 +152,14 @@ impl Bearing {
         within("width", self.width, 0.4 * self.section_height(), 2.5 * self.section_height(), 1e3, "mm")?;
         within("dynamic_load_rating", self.dynamic_load_rating, 1.0, 1e8, 1e-3, "kN")?;
         within("static_load_rating", self.static_load_rating, 1.0, 1e8, 1e-3, "kN")?;
-        within(
-            "contact_angle",
-            self.contact_angle,
-            0.0,
-            45f64.to_radians(),
-            180.0 / std::f64::consts::PI,
-            "deg",
-        )?;
+        let angle = self.contact_angle.to_degrees();
+        if !self.is_thrust() && !(0.0..=45.0 * (1.0 + 1e-12)).contains(&angle) {
+            return Err(CatalogueError::Range {
+                key: "contact_angle",
+                value: format!("{} deg", short(angle, 9)),
+                range: "[0, 45] deg, or 90 deg of a thrust bearing".into(),
+            });
+        }
         if self.is_deep_groove() {
             self.clearance.limits(self.bore)?;
         }

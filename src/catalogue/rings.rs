@@ -35,10 +35,24 @@ fn segment(radius: f64, depth: f64) -> [f64; 2] {
 }
 
 impl Bearing {
-    /// Inner and outer ring.
+    /// Inner and outer ring, or the washers of shaft and housing, which are alike.
     pub fn rings(&self, candidate: &Candidate) -> [Ring; 2] {
         let geometry = &candidate.geometry;
         let (ball, pitch) = (geometry.ball_diameter, geometry.pitch_diameter);
+        if self.is_thrust() {
+            let washer =
+                tube(0.5 * self.bore, 0.5 * self.outside, 0.5 * (self.width - (1.0 - 2.0 * SHOULDER) * ball));
+            return [0, 1].map(|race: usize| {
+                let [area, _] = segment(geometry.conformities[race] * ball, SHOULDER * ball);
+                let radius = 0.5 * pitch;
+                let lost = DENSITY * TAU * radius * area;
+                let polar = lost * radius * radius;
+                Ring {
+                    mass: washer.mass - lost,
+                    inertia: [washer.inertia[0] - polar, washer.inertia[1] - 0.5 * polar],
+                }
+            });
+        }
         [0, 1].map(|race: usize| {
             // The groove of the inner race is below its shoulder, that of the outer one above.
             let side = if race == 0 { 1.0 } else { -1.0 };

@@ -8,6 +8,8 @@ use super::{Bearing, Cage, Candidate, CatalogueError, cage, rings};
 
 /// [mm/min] speed of a scene times its pitch diameter: half of what grease-lubricated ball bearings are usually allowed.
 const SPEED: f64 = 250_000.0;
+/// [mm/min] the same of thrust bearings.
+const SPEED_OF_THRUST: f64 = 60_000.0;
 /// [-] load of a scene over C.
 const LOAD: f64 = 0.1;
 
@@ -33,12 +35,18 @@ impl Bearing {
     pub fn title(&self) -> String {
         let name = if self.designation.is_empty() { "Bearing" } else { &self.designation };
         let name = if self.hybrid { format!("{name} hybrid") } else { name.to_string() };
+        let known = if self.inside.is_some() { "of its maker" } else { "estimated" };
         if self.is_deep_groove() {
-            let class = self.clearance.name();
-            format!("{name} {class}, deep groove, {}, internal geometry estimated", self.dimensions())
+            let class = match self.own_clearance {
+                Some(_) => String::new(),
+                None => format!(" {}", self.clearance.name()),
+            };
+            format!("{name}{class}, deep groove, {}, internal geometry {known}", self.dimensions())
+        } else if self.is_thrust() {
+            format!("{name}, thrust, {}, internal geometry {known}", self.dimensions())
         } else {
             let angle = short(self.contact_angle.to_degrees(), 4);
-            format!("{name}, angular contact {angle} deg, {}, internal geometry estimated", self.dimensions())
+            format!("{name}, angular contact {angle} deg, {}, internal geometry {known}", self.dimensions())
         }
     }
 
@@ -79,6 +87,7 @@ impl Bearing {
         let others: Vec<String> =
             candidates.iter().filter(|other| *other != chosen).take(2).map(ToString::to_string).collect();
         let [inner, outer] = self.rings(chosen);
+        let speed = if self.is_thrust() { SPEED_OF_THRUST } else { SPEED };
         let mut lines = vec![
             format!("# Given: boundary dimensions of ISO 15 and load ratings ({}).", self.source),
             "# What is estimated is not the maker's: measure it, or ask for it, where results depend on it."
@@ -91,11 +100,20 @@ impl Bearing {
             format!("title = {:?}", self.title()),
             String::new(),
             "[bearing]".into(),
-            format!("# Balls: estimated from C by ISO 281 and C0 by ISO 76 (4200 MPa): {chosen}."),
-            format!("# Spread, the next in this order: {}.", others.join("; ")),
+            match self.inside {
+                Some(_) => format!("# Balls, pitch diameter, grooves: of {}; by ISO 281 and ISO 76 they have: {chosen}.", self.source),
+                None => format!(
+                    "# Balls: estimated from C by ISO 281 and C0 by ISO 76 (4200 MPa): {chosen}.\n# Spread, the next in this order: {}.",
+                    others.join("; ")
+                ),
+            },
             format!("balls = {}", geometry.balls),
             format!("ball_diameter = \"{} mm\"", short(1e3 * geometry.ball_diameter, 8)),
-            "# Pitch diameter: estimated as midway between bore and outside diameter; spread 2 %.".into(),
+            match self.inside {
+                Some(_) => "# Pitch diameter: if it is not of the maker, midway between bore and outside diameter.",
+                None => "# Pitch diameter: estimated as midway between bore and outside diameter; spread 2 %.",
+            }
+            .into(),
             format!("pitch_diameter = \"{} mm\"", short(1e3 * geometry.pitch_diameter, 8)),
         ]);
         if self.is_deep_groove() {
@@ -109,20 +127,34 @@ impl Bearing {
                 ),
                 format!("diametral_clearance = \"{} um\"", short(0.5 * (least + largest), 4)),
             ]);
+            if let Some(clearance) = self.own_clearance {
+                lines.truncate(lines.len() - 2);
+                lines.push(format!("# Radial clearance: of {}; fits and heat take from it.", self.source));
+                lines.push(format!("diametral_clearance = \"{} um\"", short(1e6 * clearance, 6)));
+            }
         } else {
             lines.extend([
-                "# Contact angle: nominal; spread about 3 deg.".into(),
+                match self.is_thrust() {
+                    true => "# Contact angle: that of washers that face each other.",
+                    false => "# Contact angle: nominal; spread about 3 deg.",
+                }
+                .into(),
                 format!("contact_angle = \"{} deg\"", short(self.contact_angle.to_degrees(), 6)),
             ]);
         }
         let [inner_conformity, outer_conformity] = geometry.conformities;
-        let close = if outer_conformity < USUAL[1] {
+        let close = if self.is_thrust() {
+            " of thrust bearings"
+        } else if outer_conformity < USUAL[1] {
             "; the outer groove is close, as C0 is above that of 0.53"
         } else {
             ""
         };
         lines.extend([
-            format!("# Conformities: estimated as those that ISO 281 and ISO 76 are of{close}; spread 0.505 to 0.54."),
+            match self.inside {
+                Some(_) => format!("# Conformities: if they are not of the maker, those that ISO 281 and ISO 76 are of{close}."),
+                None => format!("# Conformities: estimated as those that ISO 281 and ISO 76 are of{close}; spread 0.505 to 0.54."),
+            },
             format!("inner_conformity = {inner_conformity}"),
             format!("outer_conformity = {outer_conformity}"),
         ]);
@@ -172,12 +204,12 @@ impl Bearing {
             },
             String::new(),
             format!(
-                "# An example, to be changed: {LOAD} C, and the speed at which it times the pitch diameter is {SPEED} mm/min."
+                "# An example, to be changed: {LOAD} C, and the speed at which it times the pitch diameter is {speed} mm/min."
             ),
             "[load]".into(),
             "duration = \"20 ms\"".into(),
             "output_interval = \"100 us\"".into(),
-            format!("inner_speed = \"{} rpm\"", two_digits(SPEED / (1e3 * geometry.pitch_diameter))),
+            format!("inner_speed = \"{} rpm\"", two_digits(speed / (1e3 * geometry.pitch_diameter))),
         ]);
         let force = two_digits(LOAD * self.dynamic_load_rating);
         if self.is_deep_groove() {
@@ -186,6 +218,11 @@ impl Bearing {
             lines.extend(["ry", "rz"].map(|tilt| format!("{tilt} = {{ rotation = 0.0 }}")));
         } else {
             lines.push(format!("x = {{ force = \"{force} N\" }}"));
+        }
+        if self.is_thrust() {
+            lines.push("# Washers hold nothing across the axis.".into());
+            lines.extend(["y", "z"].map(|across| format!("{across} = {{ displacement = 0.0 }}")));
+            lines.extend(["ry", "rz"].map(|tilt| format!("{tilt} = {{ rotation = 0.0 }}")));
         }
         lines.push(String::new());
         lines.join("\n")

@@ -436,7 +436,7 @@ fn wrong_keys_are_refused_by_name_value_and_range() {
     let message =
         Scene::edited(&cold, [("interface.inputs.temperatures", "\"master\"")]).unwrap_err().to_string();
     assert!(message.contains("interface.inputs.temperatures") && message.contains("[growth]"), "{message}");
-    let cases: [(Changes<'_>, &[&str]); 11] = [
+    let cases: [(Changes<'_>, &[&str]); 15] = [
         (&[("growth.inner", "\"50 degC\"")], &["growth.inner", "50 degC"]),
         (&[("growth.inner", "2000.0")], &["growth.inner = 2000", "[-300, 1000] K"]),
         (&[("growth.iner", "1.0")], &["growth.iner", "did you mean inner?"]),
@@ -453,6 +453,25 @@ fn wrong_keys_are_refused_by_name_value_and_range() {
         ),
         (&[("growth.housing", "{ diameter = 0.05 }")], &["growth.housing.diameter = 0.05"]),
         (
+            &[("growth.shaft", "{ diameter = 0.03, roughness = 1e-6 }")],
+            &["growth.shaft.interference", "roughness"],
+        ),
+        (
+            &[("growth.shaft", "{ diameter = 0.03, interference = 1e-5, radial_load = 100.0 }")],
+            &["growth.shaft.width", "needed"],
+        ),
+        (
+            &[("growth.shaft", "{ diameter = 0.03, interference = 1e-5, roughness = 0.01 }")],
+            &["growth.shaft.roughness = 0.01", "[0, 0.001] m"],
+        ),
+        (
+            &[(
+                "growth.housing",
+                "{ diameter = 0.062, interference = 1e-5, outside = 0.1, radial_load = 100.0, width = 0.016 }",
+            )],
+            &["growth.housing.radial_load", "loosens inner rings"],
+        ),
+        (
             &[("growth", "{ rotation = true }"), ("load.inner_speed", "100.0")],
             &["growth.shaft", "inner race turns", "growth.shaft.diameter"],
         ),
@@ -468,6 +487,27 @@ fn wrong_keys_are_refused_by_name_value_and_range() {
             assert!(message.contains(part), "{message}\nshould name {part}");
         }
     }
+}
+
+/// Surfaces that are pressed flat (DIN 7190-1) and a load (NSK) take from a fit what a smaller one has not; none of them opens a gap.
+#[test]
+fn closed_form_interference_that_surfaces_and_load_take() {
+    let fitted = |shaft: &str| {
+        let scene = preloaded(&[("growth.shaft", shaft), ("load.inner_speed", "0.0")]);
+        Simulation::new(&scene).unwrap().outputs().growth.unwrap().interference[0]
+    };
+    let plain =
+        |interference: f64| fitted(&format!("{{ diameter = 0.03, interference = {interference:e} }}"));
+    let lost = fitted(
+        "{ diameter = 0.03, interference = 20e-6, roughness = 6e-6, radial_load = 4000.0, width = 0.016 }",
+    );
+    // 0.8 x 6 um, and 0.08 um (30/16 4000)^0.5 = 6.928 um.
+    let left = 20e-6 - 4.8e-6 - 0.08e-6 * (30.0f64 / 16.0 * 4000.0).sqrt();
+    close(lost, plain(left), 1e-9, "what is left");
+    assert!(plain(20e-6) > lost + 10e-6);
+    let gone = fitted("{ diameter = 0.03, interference = 2e-6, roughness = 6e-6 }");
+    close(gone, plain(0.0), 1e-9, "nothing is left");
+    assert_eq!(fitted("{ diameter = 0.03, interference = -5e-6, roughness = 6e-6 }"), plain(-5e-6));
 }
 
 #[test]

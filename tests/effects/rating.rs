@@ -275,9 +275,17 @@ fn keys_of_the_rating_say_what_life_is() {
     let inner = life_of(&scene(&row, "load_rests_on = \"inner\"\n"));
     assert!(inner.reference < plain.reference, "{inner:?} {plain:?}");
     for (further, parts) in [
-        ("viscosity = 1e-5\n", &["rating.contamination", "viscosity or the oil of a [film]"][..]),
+        ("viscosity = 1e-5\n", &["rating.contamination", "viscosity_ratio or the oil of a [film]"][..]),
         ("contamination = 0.5\n", &["rating.viscosity", "needs contamination"]),
         ("contamination = 1.5\nviscosity = 1e-5\n", &["rating.contamination = 1.5", "[0, 1]"]),
+        ("viscosity_ratio = 2.0\n", &["rating.contamination", "needs contamination"]),
+        ("viscosity_ratio = 0.0\ncontamination = 0.5\n", &["rating.viscosity_ratio = 0", "(0, 100]"]),
+        (
+            "viscosity_ratio = 2.0\nviscosity = 1e-5\ncontamination = 0.5\n",
+            &["rating.viscosity_ratio", "in place of viscosity"],
+        ),
+        ("life_factor = 2.0\ncontamination = 0.5\n", &["rating.life_factor", "in place of a_ISO"]),
+        ("life_factor = 101.0\n", &["rating.life_factor = 101", "(0, 100]"]),
         ("reliability = 0.5\n", &["rating.reliability = 0.5", "[0.9, 0.99]"]),
         ("viscosity = \"68 kg\"\n", &["rating.viscosity", "68 kg", "mm^2/s"]),
         ("load_rests_on = \"cage\"\n", &["cage", "outer"]),
@@ -289,9 +297,54 @@ fn keys_of_the_rating_say_what_life_is() {
             assert!(message.contains(part), "{message}\nshould name {part}");
         }
     }
-    let steep = include_str!("../../scenes/thrust.toml").replace("25 deg", "60 deg") + "\n[rating]\n";
-    let message = Scene::parse(&steep).unwrap_err().to_string();
-    assert!(message.contains("rating") && message.contains("0.7854"), "{message}");
+}
+
+/// A viscosity ratio that is given is that of a viscosity, and a factor is a factor.
+#[test]
+fn identity_a_viscosity_ratio_and_a_life_factor_in_place_of_the_viscosity() {
+    let thrust = include_str!("../../scenes/thrust.toml");
+    let rated = |section: &str| {
+        let scene = Scene::edited(thrust, [("rating", section)]).unwrap();
+        Simulation::new(&scene).unwrap().outputs().life.unwrap()
+    };
+    let scene = Scene::parse(thrust).unwrap();
+    let speed = scene.load.inner_speed.at(0.0);
+    let needed = standard::reference_viscosity(speed, scene.bearing.pitch_diameter.0);
+    let by_viscosity = rated(&format!("{{ viscosity = {}, contamination = 0.5 }}", 1.7 * needed));
+    let by_ratio = rated("{ viscosity_ratio = 1.7, contamination = 0.5 }");
+    close(by_ratio.modified.unwrap(), by_viscosity.modified.unwrap(), 1e-12, "viscosity ratio");
+    let given = rated("{ life_factor = 2.5, reliability = 0.95 }");
+    close(given.modified.unwrap(), 0.64 * 2.5 * given.reference, 1e-12, "life factor");
+}
+
+/// A 51206 under an axial load and under an eccentric one: ISO 281's life of the load, and a third of the load ratio in a_ISO.
+#[test]
+fn closed_form_life_of_a_thrust_bearing() {
+    let of = |changes: &[(&str, &str)]| {
+        let text = "[bearing]\nballs = 15\nball_diameter = \"7.938 mm\"\npitch_diameter = \"41 mm\"\ncontact_angle = \"90 deg\"\n\
+                    inner_conformity = 0.54\nouter_conformity = 0.54\n[effects]\ndamping = \"0.02 s/m\"\n[inner]\ndrive = \"wrench\"\n\
+                    mass = 0.1\ninertia = [5e-5, 3e-5, 3e-5]\n[rating]\ndynamic_load_rating = \"29.5 kN\"\nstatic_load_rating = \"58 kN\"\n\
+                    [load]\nduration = \"1 ms\"\noutput_interval = \"1 ms\"\ninner_speed = \"500 rpm\"\nx = { force = 3000.0 }\n\
+                    y = { displacement = 0.0 }\nz = { displacement = 0.0 }\nry = { rotation = 0.0 }\nrz = { rotation = 0.0 }\n";
+        let scene = Scene::edited(text, changes.iter().copied()).unwrap();
+        Simulation::new(&scene).unwrap().outputs().life.unwrap()
+    };
+    let plain = of(&[]);
+    // Washers at 500 rpm throw balls outwards by 0.6 % of their loads at most.
+    close(plain.reference, (29.5f64 / 3.0).powi(3), 0.01, "life");
+    close(plain.equivalent_load, 3000.0, 0.004, "equivalent load");
+    close(plain.static_safety, 58.0 / 3.0, 0.01, "static safety");
+    let ratio = 0.5 * standard::fatigue_load_limit(58e3, 41e-3) / plain.equivalent_load / 3.0;
+    let modified = of(&[("rating.viscosity_ratio", "1.5"), ("rating.contamination", "0.5")]);
+    close(
+        modified.modified.unwrap(),
+        standard::life_modification(1.5, ratio) * modified.reference,
+        1e-12,
+        "modified life",
+    );
+    // A tilted washer loads a side: less life under the same load.
+    let tilted = of(&[("load.ry", "{ rotation = 1e-4 }")]);
+    assert!(tilted.reference < 0.9 * plain.reference, "{tilted:?}");
 }
 
 #[test]

@@ -5,7 +5,11 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use roulement::catalogue::{Bearing, Request, SOURCE, table};
+use roulement::catalogue::{Bearing, Request, SOURCE, Shelf, table};
+
+use roulement_cli::doubt::doubt;
+use roulement_cli::sweep::all::threads;
+use roulement_cli::sweep::setting::Setting;
 
 use super::say;
 
@@ -39,13 +43,20 @@ pub struct Options {
     /// the balls) or none.
     #[arg(long, value_name = "CAGE")]
     cage: Option<String>,
-    /// List the balls that come near both load ratings, with their errors, and write no scene.
+    /// List the balls that come near both load ratings, with their errors, and how far they and what else is estimated move life, torque and loads;
+    /// write no scene.
     #[arg(long)]
     candidates: bool,
+    /// Key of the scene that `--candidates` looks at, as load.y.force="2 kN"; several times.
+    #[arg(long, value_name = "KEY=VALUE", requires = "candidates")]
+    set: Vec<String>,
     /// Which of these candidates the scene has.
     #[arg(long, value_name = "N", default_value_t = 1)]
     candidate: usize,
-    /// List the table of common sizes.
+    /// Shelf of one's own bearings, which come before the table; catalogue.toml of the current folder, if it is there, where none is given.
+    #[arg(long, value_name = "FILE")]
+    shelf: Option<PathBuf>,
+    /// List the table of common sizes, and the shelf.
     #[arg(long)]
     list: bool,
     /// Scene file to write; standard output if not given.
@@ -82,12 +93,18 @@ impl Options {
 /// # Errors
 /// If there is no such bearing, or the file cannot be written.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let shelf = match &options.shelf {
+        Some(path) => Shelf::load(path)?,
+        None => Shelf::beside("".as_ref())?,
+    };
     if options.list {
-        return Ok(say(&list())?);
+        return Ok(say(&list(&shelf))?);
     }
-    let bearing = options.request()?.bearing()?;
+    let bearing = options.request()?.of_shelf(&shelf)?;
     if options.candidates {
-        return Ok(say(&candidates(&bearing)?)?);
+        let set = options.set.iter().map(|given| setting(given)).collect::<Result<Vec<_>, _>>()?;
+        let spread = doubt(&bearing, options.candidate, &set, threads())?;
+        return Ok(say(&format!("{}\n{}", candidates(&bearing)?, spread.to_text()))?);
     }
     let scene = bearing.scene(options.candidate)?;
     match &options.output {
@@ -100,8 +117,16 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Key and value of `KEY=VALUE`: TOML, or a text such as 2 kN.
+fn setting(given: &str) -> Result<(String, String), String> {
+    let (key, value) = given
+        .split_once('=')
+        .ok_or_else(|| format!("--set {given}: allowed is KEY=VALUE, such as load.y.force=\"2 kN\""))?;
+    Ok((key.trim().to_owned(), Setting::of_cell(value.trim(), None).toml))
+}
+
 /// The table of common sizes.
-fn list() -> String {
+fn list(shelf: &Shelf) -> String {
     let mut text = format!(
         "load ratings: {SOURCE}\n\n{:<12} {:>4} {:>7} {:>5} {:>9} {:>9}\n",
         "name", "bore", "outside", "width", "C [kN]", "C0 [kN]"
@@ -114,6 +139,9 @@ fn list() -> String {
             "{name:<12} {bore:>4} {outside:>7} {width:>5} {:>9} {:>9}",
             row.dynamic, row.static_
         );
+    }
+    for name in shelf.names() {
+        let _ = writeln!(text, "{name:<12} (shelf)");
     }
     text
 }

@@ -14,7 +14,11 @@ use roulement::scene::system::SystemScene;
 use roulement::scene::units::{AngularVelocity, Quantity};
 use roulement::simulation::system::{MachineEquilibrium, largest_speed};
 
+use roulement_cli::duty::DutyRating;
+use roulement_cli::duty::say::with_duty;
 use roulement_cli::modes::warnings;
+use roulement_cli::sweep::all::threads;
+use serde_json::Value;
 
 use super::field::Moment;
 use super::{load, say, tell};
@@ -93,7 +97,9 @@ impl FromStr for Speed {
 /// If there is no equilibrium.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let Moment(time) = options.time;
-    match load(&options.scene)? {
+    let scene = load(&options.scene)?;
+    let duty = DutyRating::of_scene(&scene, threads())?;
+    match scene {
         MachineScene::Bearing(scene) => {
             if options.up_to.is_some() {
                 return Err(
@@ -101,7 +107,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
                 );
             }
             let gyroscopic = options.gyroscopic.unwrap_or(GyroscopicChoice::OuterRaceControl);
-            of_bearing(&scene, time, options.json, gyroscopic.into())
+            of_bearing(&scene, time, options.json, gyroscopic.into(), duty.as_ref())
         }
         MachineScene::Shaft(scene) => {
             if options.gyroscopic.is_some_and(|choice| !matches!(choice, GyroscopicChoice::Friction)) {
@@ -109,15 +115,21 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
                     "--gyroscopic: on a shaft friction carries the gyroscopic moments of balls".into()
                 );
             }
-            of_shaft(&scene, time, options.json, options.up_to)
+            of_shaft(&scene, time, options.json, options.up_to, duty.as_ref())
         }
     }
 }
 
-fn of_shaft(scene: &SystemScene, time: f64, json: bool, up_to: Option<Speed>) -> Result<(), Box<dyn Error>> {
+fn of_shaft(
+    scene: &SystemScene,
+    time: f64,
+    json: bool,
+    up_to: Option<Speed>,
+    duty: Option<&DutyRating>,
+) -> Result<(), Box<dyn Error>> {
     let up_to = up_to.map_or_else(|| largest_speed(scene), |Speed(speed)| speed);
     let found = MachineEquilibrium::of(scene, time, up_to)?;
-    say(&if json { format!("{:#}\n", found.to_json()) } else { found.to_string() })?;
+    say_found(json, || found.to_json(), &found, duty)?;
     for (of, mounted) in found.bearings.iter().zip(&scene.bearings) {
         let pressure = mounted.scene.pressure_note(of.peak_pressure());
         let life = of.outputs.life.as_ref().and_then(LifeOutput::warning);
@@ -138,15 +150,31 @@ fn tell_growing(scene: &MachineScene, time: f64) {
     tell(warnings(scene, time).into_iter().map(|warning| format!("warning: {warning}")));
 }
 
-fn of_bearing(scene: &Scene, time: f64, json: bool, gyroscopic: Gyroscopic) -> Result<(), Box<dyn Error>> {
+/// Says an equilibrium, and behind it the rating over the duty of its scene.
+fn say_found(
+    json: bool,
+    as_json: impl FnOnce() -> Value,
+    in_words: &impl std::fmt::Display,
+    duty: Option<&DutyRating>,
+) -> std::io::Result<()> {
+    let words = duty.map_or(String::new(), |duty| format!("\n{duty}"));
+    if !json {
+        return say(&format!("{in_words}{words}"));
+    }
+    say(&format!("{:#}\n", with_duty(as_json(), duty)))
+}
+
+fn of_bearing(
+    scene: &Scene,
+    time: f64,
+    json: bool,
+    gyroscopic: Gyroscopic,
+    duty: Option<&DutyRating>,
+) -> Result<(), Box<dyn Error>> {
     let input = EquilibriumInput::at(scene, gyroscopic, time);
     let model = Model::new(scene)?;
     let solution = equilibrium::solve(&model, &input)?;
-    if json {
-        say(&format!("{:#}\n", solution.to_json()))?;
-    } else {
-        say(&solution.to_string())?;
-    }
+    say_found(json, || solution.to_json(), &solution, duty)?;
     tell(scene.pressure_note(solution.peak_pressure(&model)));
     tell(solution.warning());
     tell(solution.life.and_then(|life| life.warning()));

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use roulement::analysis::estimate::Verdicts;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
+use roulement_cli::duty::DutyRating;
+use roulement_cli::duty::say::with_duty;
 use roulement_cli::page::{self, history, record};
 use roulement_cli::report;
 use roulement_cli::report::figures::{Figures, Shown};
@@ -32,6 +34,16 @@ pub enum Said {
     Json,
     /// It stands in the files alone.
     Nothing,
+}
+
+/// What is found about a scene beside its run.
+pub struct Judged {
+    /// Verdicts on effects, of every bearing.
+    pub verdicts: Vec<Verdicts>,
+    /// Rating over its duty, if it has one.
+    pub duty: Option<DutyRating>,
+    /// Warnings of motions that grow.
+    pub growing: Vec<String>,
 }
 
 /// Where the results of a run go. Those of a shaft are a directory with one of each bearing in it.
@@ -139,15 +151,15 @@ impl Place {
         tables.into_iter().map(path)
     }
 
-    /// Leaves plots, means, summaries and records of a run, and says the summary. Verdicts are those of every bearing; error bars, of
-    /// every bearing and then of the shaft, and a report of errors are those of runs that were compared.
+    /// Leaves plots, means, summaries and records of a run, and says the summary. Error bars, of every bearing and then of the shaft, and a report
+    /// of errors are those of runs that were compared.
     ///
     /// # Errors
     /// If files cannot be written, or nothing can be said.
     pub fn leave(
         &self,
         played: &Played,
-        verdicts: &[Verdicts],
+        judged: &Judged,
         bars: Option<Vec<Figures>>,
         errors: &str,
     ) -> Result<(), Box<dyn Error>> {
@@ -162,17 +174,25 @@ impl Place {
         for (index, ((name, part), own)) in played.seen.parts(&played.machine).zip(&shown).enumerate() {
             text = match part {
                 Part::Bearing(bearing, seen) => {
-                    summary::of_bearing(played, (bearing, seen), own, &verdicts[index])
+                    summary::of_bearing(played, (bearing, seen), own, &judged.verdicts[index])
                 }
                 Part::Shaft(system, seen) => summary::of_shaft(played, (system, seen), own, &shown[..index]),
             };
             // The last part stands for the machine.
             let is_whole = index + 1 == shown.len();
+            let duty = judged.duty.as_ref().filter(|_| is_whole);
             if is_whole {
                 text += errors;
+                text += &duty.map_or(String::new(), |duty| format!("\n{duty}"));
             }
             let plots = match self.has_files() {
-                true => self.write_part(played, (index, name, part), own, verdicts.get(index), &text)?,
+                true => self.write_part(
+                    played,
+                    (index, name, part),
+                    own,
+                    (judged.verdicts.get(index), duty),
+                    &text,
+                )?,
                 false => vec![],
             };
             if is_whole {
@@ -188,7 +208,10 @@ impl Place {
         }
         let listed = match self.said {
             Said::Nothing => return Ok(()),
-            Said::Json => format!("{:#}\n", json::of_machine(&played.machine, &played.seen, &shown)),
+            Said::Json => {
+                let report = json::of_machine(&played.machine, &played.seen, &shown);
+                format!("{:#}\n", with_duty(report, judged.duty.as_ref()))
+            }
             Said::Text => format!("{text}\n{listed}"),
         };
         tell(played.seen.remarks(&played.machine));
@@ -206,7 +229,7 @@ impl Place {
         played: &Played,
         (index, name, part): (usize, &str, Part<'_>),
         shown: &Shown,
-        verdicts: Option<&Verdicts>,
+        (verdicts, duty): (Option<&Verdicts>, Option<&DutyRating>),
         text: &str,
     ) -> Result<Vec<PathBuf>, Box<dyn Error>> {
         let directory = self.of_bearing(name);
@@ -246,6 +269,7 @@ impl Place {
             shown,
             warnings: if name.is_empty() { played.seen.warnings(&played.machine) } else { part.warnings() },
             verdicts,
+            duty,
             summary: text,
             took: [played.wall.as_secs_f64(), played.cpu],
             work,

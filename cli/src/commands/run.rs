@@ -5,19 +5,21 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use roulement::analysis::estimate::{self, Verdicts};
+use roulement::analysis::estimate;
 use roulement::scene::machine::MachineScene;
 use roulement::scene::{ErrorGoal, ErrorOf};
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Rows;
+use roulement_cli::duty::DutyRating;
 use roulement_cli::error::{Judgement, MOST_ROUNDS, Rounds, finer, twin_of_coarser};
 use roulement_cli::modes::warnings;
 use roulement_cli::report::results::{Choice, Window};
 use roulement_cli::report::tables::Tables;
+use roulement_cli::sweep::all::threads;
 
 use super::effects::announce;
 use super::interrupt::{INTERRUPTED, heeded_interrupt};
-use super::place::{Place, Said};
+use super::place::{Judged, Place, Said};
 use super::player::{End, Played, Player};
 use super::{load, tell};
 
@@ -112,17 +114,18 @@ pub fn simulate(
             announce(name, bearing.scene(), verdicts);
         }
     }
-    let growing = warnings(scene, 0.0);
-    tell(growing.iter().map(|warning| format!("warning: {warning}")));
+    let duty = DutyRating::of_scene(scene, threads())?;
+    let judged = Judged { verdicts, duty, growing: warnings(scene, 0.0) };
+    tell(judged.growing.iter().map(|warning| format!("warning: {warning}")));
     place.begin(scene, &machine)?;
     let tables = place.tables(scene, &machine, false)?;
     if wants_error || scene.solver().goal.is_some() {
-        return measured(player, scene, (machine, tables), place, (&verdicts, &growing), rounds);
+        return measured(player, scene, (machine, tables), place, &judged, rounds);
     }
     let rows = Rows { end_steps, ..Rows::of_scene(scene) };
     let mut played = player.play(machine, rows, Some(tables), "")?;
-    played.seen.set_growing(&growing);
-    place.leave(&played, &verdicts, None, "")?;
+    played.seen.set_growing(&judged.growing);
+    place.leave(&played, &judged, None, "")?;
     ended(&played)
 }
 
@@ -145,14 +148,14 @@ fn measured(
     scene: &MachineScene,
     (machine, tables): (Machine, Tables),
     place: &Place,
-    (verdicts, growing): (&[Verdicts], &[String]),
+    judged: &Judged,
     most: u32,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let times = Rows::of_scene(scene);
     let mut rounds = Rounds::new(scene.solver().goal, most);
     let mut played = player.play(machine, times, Some(tables), "round 1: ")?;
     if !matches!(played.end, End::Reached) {
-        place.leave(&played, verdicts, None, "")?;
+        place.leave(&played, judged, None, "")?;
         return ended(&played);
     }
     rounds.push(played.take_comparable());
@@ -188,8 +191,8 @@ fn measured(
         break (judgement, next.end);
     };
     played.seen.set_means(rounds.means());
-    played.seen.set_growing(growing);
-    place.leave(&played, verdicts, rounds.bars(), &rounds.report())?;
+    played.seen.set_growing(&judged.growing);
+    place.leave(&played, judged, rounds.bars(), &rounds.report())?;
     let round = rounds.count() + 1;
     match (end, judgement) {
         (End::Interrupted, _) => {

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use super::grid::Grid;
 use super::{bearing, fields, shaft};
+use crate::duty::DutyRating;
 use crate::report::figures::Shown;
 use crate::report::json;
 use crate::report::spectrum::Spectrum;
@@ -50,6 +51,8 @@ pub struct Run<'a> {
     pub warnings: Vec<String>,
     /// Estimates of effects of a bearing.
     pub verdicts: Option<&'a Verdicts>,
+    /// Rating over the duty of the machine, with its last part.
+    pub duty: Option<&'a DutyRating>,
     /// The summary in words.
     pub summary: &'a str,
     /// \[s] wall and CPU time.
@@ -63,7 +66,7 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// The record.
     pub fn to_json(&self) -> Value {
-        let Self { part, history, shown, warnings, verdicts, summary, took, work, ended_early } = self;
+        let Self { part, history, shown, warnings, verdicts, duty, summary, took, work, ended_early } = self;
         let mut record = json!({
             "form": FORM,
             "program": env!("ROULEMENT_VERSION"),
@@ -87,6 +90,7 @@ impl Run<'_> {
                 "polynomial_failures": work.polynomial_failures,
             },
             "history": history.to_json(),
+            "duty": duty.map(DutyRating::to_json),
         });
         match part {
             Part::Shaft(system, _) => record["shaft"] = shaft::describe(system),

@@ -203,7 +203,7 @@ fn kind(
     let class = class.filter(|class| matches!(class.as_str(), "C2" | "C3" | "C4" | "C5")).unwrap_or_default();
     if let Some(name) = designation(of) {
         let name = format!("{name} {class}").trim().to_owned();
-        if scene_of(&name).is_ok() {
+        if scene_of(&name, None).is_ok() {
             return Ok(Kind::Catalogue(name));
         }
     }
@@ -229,7 +229,7 @@ fn named_in(name: &str) -> Option<Kind> {
         if matches!(rollers_of(&name), Some(Ok(_))) {
             return Some(Kind::Rollers(name));
         }
-        scene_of(&name).is_ok().then_some(Kind::Catalogue(name))
+        scene_of(&name, None).is_ok().then_some(Kind::Catalogue(name))
     })
 }
 

@@ -14,6 +14,7 @@ use roulement::simulation::play::{Rows, play_observed};
 use super::SweepError;
 use super::columns::GatheredMachine;
 use super::extremes::{Gathered, OF_BALLS};
+use crate::duty::DutyRating;
 use crate::error::{Compared, Refined, Run, refine};
 use crate::modes::{Found, judged, told};
 use crate::report::cells::{Cell, Column};
@@ -76,6 +77,7 @@ pub fn run(
             row.push(number("time", "s", done.machine.time()));
             row.extend(done.motions.iter().flat_map(|motions| of_motions(motions.as_deref())));
             row.extend(of_machine(&done, goal));
+            row.extend(of_duty(scene));
             Ok(Some(row))
         }
         Err(Ended::Failed(why)) => Ok(Some(ended("failed", &why))),
@@ -176,6 +178,15 @@ fn played(
         seen.set_growing(&told(motions, scene));
     }
     Ok(Done { machine, seen, gathered, motions })
+}
+
+/// The rating over the duty of a scene that has one, or why there is none.
+fn of_duty(scene: &MachineScene) -> Row {
+    // Cases have the threads.
+    match DutyRating::of_scene(scene, 1) {
+        Ok(duty) => duty.map_or(vec![], |duty| duty.to_row()),
+        Err(why) => vec![(Column::text("duty.reason"), Cell::Text(why.to_string()))],
+    }
 }
 
 /// Growth of the motion that grows fastest or decays slowest, its frequency, what it is, and whether something grows.

@@ -18,7 +18,7 @@ pub mod cases;
 mod columns;
 mod extremes;
 mod ranges;
-mod setting;
+pub mod setting;
 pub mod store;
 pub mod summary;
 

@@ -13,7 +13,7 @@ pub struct Setting {
 
 impl Setting {
     /// A value as a scene file has it.
-    pub fn of_value(value: &Value) -> Self {
+    pub(super) fn of_value(value: &Value) -> Self {
         let toml = value.to_string();
         let shown = value.as_str().map_or_else(|| toml.clone(), str::to_string);
         Self { shown, toml }

@@ -69,6 +69,107 @@ fn candidates_are_listed_with_their_errors_and_can_be_chosen() {
 }
 
 #[test]
+fn a_shelf_is_looked_up_before_the_table_and_checked() {
+    let scratch = Scratch::new("bearing-shelf");
+    let own = "[[bearing]]\ndesignation = \"HB 7205 X\"\nbore = \"25 mm\"\noutside = \"52 mm\"\nwidth = \"15 mm\"\n\
+               dynamic_load_rating = \"16 kN\"\nstatic_load_rating = \"10 kN\"\ncontact_angle = \"18 deg\"\nballs = 14\n\
+               ball_diameter = \"7.144 mm\"\n";
+    std::fs::write(scratch.path("catalogue.toml"), own).unwrap();
+    let shelf = scratch.path("catalogue.toml");
+    let output = roulement(&["bearing", "HB", "7205", "X", "--shelf", &shelf]);
+    let scene = String::from_utf8(output.stdout).unwrap();
+    assert!(scene.contains("balls = 14\n") && scene.contains("ball_diameter = \"7.144 mm\""), "{scene}");
+    let checked = roulement(&["check", &shelf]);
+    let told = String::from_utf8(checked.stdout).unwrap();
+    assert!(
+        checked.status.success() && told.contains("a shelf of bearings") && told.contains("HB 7205 X"),
+        "{told}"
+    );
+    std::fs::write(&shelf, own.replace("balls = 14", "balls = 0")).unwrap();
+    let checked = roulement(&["check", &shelf]);
+    let told = String::from_utf8(checked.stdout).unwrap();
+    assert!(!checked.status.success() && told.contains("balls = 0") && told.contains("[3, "), "{told}");
+    let refused = roulement(&["run", &shelf]);
+    let told = String::from_utf8(refused.stderr).unwrap();
+    assert!(!refused.status.success() && told.contains("is a shelf of bearings"), "{told}");
+}
+
+/// What `--candidates` says of an input is the equilibrium of a scene with that input.
+#[test]
+fn consistency_the_spread_of_what_is_estimated_is_that_of_scenes_with_it() {
+    let scratch = Scratch::new("bearing-doubt");
+    let set = ["--set", "load.y.force=1.5 kN", "--set", "load.inner_speed=\"3000 rpm\""];
+    let listed = roulement(&[&["bearing", "6205", "--candidates"][..], &set].concat());
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    let line = |name: &str| -> Vec<String> {
+        let line = listed
+            .lines()
+            .find(|line| line.trim_start().starts_with(name))
+            .unwrap_or_else(|| panic!("{listed}"));
+        line.trim_start()[name.len()..].split_whitespace().map(str::to_owned).collect()
+    };
+    roulement(&["bearing", "6205", "-o", &scratch.path("scene.toml")]);
+    let text = scratch.read("scene.toml");
+    let edited = |from: &str, to: &str| {
+        let loaded: String = text
+            .replace(from, to)
+            .lines()
+            .map(|line| match line.split(' ').next() {
+                Some("inner_speed") => "inner_speed = \"3000 rpm\"\n".to_owned(),
+                Some("y") => "y = { force = \"1.5 kN\" }\n".to_owned(),
+                _ => format!("{line}\n"),
+            })
+            .collect();
+        std::fs::write(scratch.path("edited.toml"), loaded).unwrap();
+        let found =
+            roulement(&["equilibrium", &scratch.path("edited.toml"), "--gyroscopic", "friction", "--json"]);
+        let found: Value = serde_json::from_slice(&found.stdout).unwrap();
+        let loads: Vec<f64> = found["balls"]["inner_load"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|load| load.as_f64().unwrap())
+            .collect();
+        [
+            found["life"]["L10r"].as_f64().unwrap() * 1e6 / (60.0 * 3000.0),
+            loads.into_iter().fold(0.0, f64::max),
+        ]
+    };
+    let near = |told: &str, own: f64| {
+        let told: f64 = told.parse().unwrap();
+        assert!((told / own - 1.0).abs() < 0.01, "{told} {own}\n{listed}");
+    };
+    // "life L10r  412 h  310 to 420 h  bearing.inner_conformity = 0.505: 310".
+    let [life, load] = edited("none", "none");
+    let (told, of_load) = (line("life L10r"), line("largest ball load"));
+    near(&told[0], life);
+    near(&of_load[0], load);
+    let spans = |told: &[String]| [told[2].parse::<f64>().unwrap(), told[4].parse::<f64>().unwrap()];
+    let [least, most] = spans(&told);
+    // Clearance: the class CN of a bore of 25 mm, 5 to 20 um.
+    for clearance in ["5 um", "20 um"] {
+        let [life, load] =
+            edited("diametral_clearance = \"12.5 um\"", &format!("diametral_clearance = \"{clearance}\""));
+        assert!(life > 0.99 * least && life < 1.01 * most, "{clearance}: {life}\n{listed}");
+        let [least, most] = spans(&of_load);
+        assert!(load > 0.99 * least && load < 1.01 * most, "{clearance}: {load}\n{listed}");
+    }
+    // The other candidate that is likely, and a groove that is close, widen the span of the peak pressure.
+    let pressure = line("peak pressure");
+    let [least, most] = spans(&pressure);
+    assert!(most > 1.1 * least && listed.contains("_conformity = "), "{listed}");
+    // What is given is known.
+    let known =
+        [&set[..], &["--set", "bearing.inner_conformity=0.52", "--set", "bearing.outer_conformity=0.53"]]
+            .concat();
+    let known = roulement(&[&["bearing", "6205", "--candidates"][..], &known].concat());
+    let known = String::from_utf8(known.stdout).unwrap();
+    assert!(known.contains("life L10r") && !known.contains("conformity ="), "{known}");
+    let refused = roulement(&["bearing", "6205", "--candidates", "--set", "load.y.farce=1"]);
+    assert!(!refused.status.success() && String::from_utf8_lossy(&refused.stderr).contains("load.y.farce"));
+}
+
+#[test]
 fn bearings_that_are_not_there_are_refused() {
     for (arguments, part) in [
         (vec!["bearing", "6299"], "6299 is not in the table"),

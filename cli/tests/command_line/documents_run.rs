@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+use roulement::catalogue::Shelf;
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
 use roulement_cli::system::Description;
@@ -228,6 +229,13 @@ fn every_part_of_a_scene_in_the_documents_is_read() {
                 }
                 if table.contains_key("components") {
                     Description::read(part).unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
+                    read += 1;
+                    continue;
+                }
+                let of_shelf =
+                    |bearings: &Vec<Value>| bearings.iter().any(|one| one.get("designation").is_some());
+                if table.get("bearing").and_then(Value::as_array).is_some_and(of_shelf) {
+                    Shelf::parse(part, &document).unwrap_or_else(|why| panic!("{document}: {part}\n{why}"));
                     read += 1;
                     continue;
                 }

@@ -10,6 +10,7 @@ mod common;
 mod contacts;
 mod cost;
 mod documents_run;
+mod duty;
 mod effects;
 mod field;
 mod means;

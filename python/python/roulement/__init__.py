@@ -14,14 +14,15 @@ import importlib
 from . import catalogue, coupling, load_cases, shaft, vibration
 from .contacts import LAWS, contact
 from .cost import cost
-from .equilibrium import Equilibrium, MachineEquilibrium, equilibrium
+from .equilibrium import Equilibrium, MachineEquilibrium, equilibrium, rating
 from .modes import Modes, Motions, modes
 from .results import Results, run
-from .scene import Scene, cage, effects, package
+from .scene import Checked, Scene, cage, check, effects, package
 from .simulation import Simulation
 
 __all__ = [
     "LAWS",
+    "Checked",
     "Equilibrium",
     "MachineEquilibrium",
     "Modes",
@@ -31,6 +32,7 @@ __all__ = [
     "Simulation",
     "cage",
     "catalogue",
+    "check",
     "contact",
     "cost",
     "coupling",
@@ -40,6 +42,7 @@ __all__ = [
     "load_cases",
     "modes",
     "package",
+    "rating",
     "run",
     "shaft",
     "sweep",

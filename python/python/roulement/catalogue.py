@@ -10,6 +10,7 @@ beside a name stand in place of those of the table. `clearance` is the class of 
 """
 
 import json
+from pathlib import Path
 
 from . import _native
 from ._toml import to_toml
@@ -26,20 +27,20 @@ def _request(designation, numbers):
     return "\n".join(f"{key} = {to_toml(value)}" for key, value in given.items() if value is not None)
 
 
-def bearing(designation=None, *, candidate=1, **numbers):
+def bearing(designation=None, *, candidate=1, shelf=None, **numbers):
     """The scene of a bearing, with the `candidate`-th balls that come near its load ratings. `Scene.source` has sources and spreads of
-    all estimates in its comments, until the scene is edited.
+    all estimates in its comments, until the scene is edited. `shelf` is the path of a file of one's own bearings, which come before the table.
 
     Raises ValueError if a name is not in the table, something is missing or out of range.
     """
-    return Scene.parse(_native.catalogue_scene(_request(designation, numbers), candidate))
+    return Scene.parse(_native.catalogue_scene(_request(designation, numbers), candidate, shelf and Path(shelf)))
 
 
-def candidates(designation=None, **numbers):
+def candidates(designation=None, *, shelf=None, **numbers):
     """Balls that come near both load ratings, the nearest first: a list of dictionaries with `balls`, `ball_diameter`,
     `pitch_diameter` [m], `inner_conformity`, `outer_conformity`, `dynamic_load_rating`, `static_load_rating` [N], their errors
     `dynamic_error`, `static_error` [-], and `inner_mass`, `outer_mass` of the rings [kg]."""
-    return json.loads(_native.catalogue_candidates(_request(designation, numbers)))
+    return json.loads(_native.catalogue_candidates(_request(designation, numbers), shelf and Path(shelf)))
 
 
 def names():

@@ -1,3 +1,4 @@
+from os import PathLike
 from typing import Any
 
 from .scene import Scene
@@ -8,6 +9,7 @@ def bearing(
     designation: str | None = None,
     *,
     candidate: int = 1,
+    shelf: str | PathLike[str] | None = None,
     bore: float | str | None = None,
     outside: float | str | None = None,
     width: float | str | None = None,
@@ -19,6 +21,7 @@ def bearing(
 def candidates(
     designation: str | None = None,
     *,
+    shelf: str | PathLike[str] | None = None,
     bore: float | str | None = None,
     outside: float | str | None = None,
     width: float | str | None = None,

@@ -19,6 +19,7 @@ class Equilibrium:
     peak_pressure: float
     balls: SimpleNamespace
     life: SimpleNamespace | None
+    duty: dict[str, Any] | None
     report: dict[str, Any]
 
 @dataclass(frozen=True)
@@ -27,9 +28,11 @@ class MachineEquilibrium:
     meshes: dict[str, SimpleNamespace]
     modes: list[SimpleNamespace]
     critical_speeds: list[SimpleNamespace]
+    duty: dict[str, Any] | None
     report: dict[str, Any]
 
 def equilibrium(
     scene: Scene | str | PathLike[str],
     gyroscopic: Literal["outer-race-control", "inner-race-control", "least-heat", "none", "friction"] | None = None,
 ) -> Equilibrium | MachineEquilibrium: ...
+def rating(scene: Scene | str | PathLike[str], loads: str | PathLike[str] | None = None) -> dict[str, Any]: ...

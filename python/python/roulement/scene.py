@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
@@ -92,6 +93,27 @@ def cage(scene, jobs=None):
 
     Raises RuntimeError if there is no cage."""
     return json.loads(Scene.of(scene)._native.cage(jobs))
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A file that was looked at."""
+
+    kind: str
+    """What it is: the scene of a bearing, a machine, a sweep, a system of packages, and so on."""
+    lines: list
+    """What it would run, notes on unusual numbers, the time that it would take; errors begin with "error"."""
+    good: bool
+    """Can it be read, and does its run not stop?"""
+
+    def __str__(self):
+        return "\n".join([self.kind, *(f"  {line}" for line in self.lines)])
+
+
+def check(path):
+    """What a file is, and what it would run: a `Checked`, as `roulement check` prints it. A file that is refused raises nothing."""
+    kind, lines, good = _native.check(Path(path))
+    return Checked(kind, lines, good)
 
 
 def find_libraries():

@@ -1,3 +1,4 @@
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any, Mapping, Self, Sequence
@@ -22,6 +23,13 @@ class Scene:
 
 def effects(scene: Scene | str | PathLike[str]) -> dict[str, Any]: ...
 def cage(scene: Scene | str | PathLike[str], jobs: int | None = None) -> list[dict[str, Any]]: ...
+@dataclass(frozen=True)
+class Checked:
+    kind: str
+    lines: list[str]
+    good: bool
+
+def check(path: str | PathLike[str]) -> Checked: ...
 def find_libraries() -> list[Path]: ...
 def package(
     scene: Scene | str | PathLike[str],

@@ -154,7 +154,7 @@ impl Seat {
             if index == 0 { Fit { inner: other, outer: ring } } else { Fit { inner: ring, outer: other } };
         Self {
             ring,
-            fit: partner.interference.map(|interference| (fit, interference.0)),
+            fit: partner.left().map(|interference| (fit, interference)),
             diameter: partner.diameter.0,
             expansion: partner.thermal_expansion.0,
         }

@@ -6,7 +6,7 @@ use crate::effects::effect::Setup;
 use crate::effects::keys::Keys;
 use crate::schema::numbers::{Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
 use crate::schema::schedule::{self, Schedule};
-use crate::schema::units::{Density, Length, Pressure, TemperatureRise, ThermalExpansion};
+use crate::schema::units::{Density, Force, Length, Pressure, TemperatureRise, ThermalExpansion};
 use crate::schema::{BearingSection, Material, SceneError};
 
 /// The effect as a scene has it: there is a section, or there is none.
@@ -46,6 +46,13 @@ pub struct Partner {
     /// \[m] diametral interference of the fit at given dimensions; negative is a gap. Without it the ring is not held by its
     /// seat: it grows by its own temperature and rotation.
     pub interference: Option<Length>,
+    /// \[m] roughness Rz of ring and seat together: 0.8 of it are pressed flat, and lost to the interference (DIN 7190-1).
+    pub roughness: Option<Length>,
+    /// \[N] radial load that loosens an inner ring by `0.08 um (d/B F)^0.5`, d and B in mm, F in N, up to a quarter of C0 (NSK, Rolling Bearings);
+    /// with `width`.
+    pub radial_load: Option<Force>,
+    /// \[m] width of the ring.
+    pub width: Option<Length>,
     /// \[m] diameter of the seat: bore of the inner ring, outside of the outer ring.
     pub diameter: Length,
     /// \[m] bore of a hollow shaft; 0 is a solid one.
@@ -74,6 +81,9 @@ impl Partner {
     pub(super) fn of_seat(diameter: f64) -> Self {
         Self {
             interference: None,
+            roughness: None,
+            radial_load: None,
+            width: None,
             diameter: Length(diameter),
             bore: None,
             outside: None,
@@ -83,6 +93,16 @@ impl Partner {
             thermal_expansion: steel_expansion(),
             rise: Schedule::default(),
         }
+    }
+
+    /// \[m] interference that surfaces and load leave of a fit; none without one, and gaps stay as they are.
+    pub(super) fn left(&self) -> Option<f64> {
+        let interference = self.interference?.0;
+        let flattened = FLATTENED * self.roughness.map_or(0.0, |roughness| roughness.0);
+        let slenderness = self.width.map_or(0.0, |width| self.diameter.0 / width.0);
+        let loosened = LOOSENED * (slenderness * self.radial_load.map_or(0.0, |load| load.0)).sqrt();
+        let left = (interference - flattened - loosened).max(0.0);
+        Some(if interference > 0.0 { left } else { interference })
     }
 
     /// Part as cold as it is given, and without a fit.
@@ -114,6 +134,14 @@ pub const EXPANSION: Range = Range::closed(-1e-5, 1e-4, "1/K");
 const INTERFERENCE: Range = Range::closed(-0.01, 0.01, "m");
 const DIAMETER: Range = Range::above(0.0, 1e3, "m");
 const DENSITY: Range = Range::closed(1.0, 1e5, "kg/m3");
+const ROUGHNESS: Range = Range::closed(0.0, 1e-3, "m");
+const LOAD: Range = Range::closed(0.0, 1e9, "N");
+const WIDTH: Range = Range::above(0.0, 10.0, "m");
+
+/// [-] part of the heights of both surfaces that a fit presses flat, on the diameter (DIN 7190-1).
+const FLATTENED: f64 = 0.8;
+/// [m/N^0.5] interference that a load takes, times the root of seat over width (NSK, Rolling Bearings, "Fitting").
+const LOOSENED: f64 = 0.08e-6;
 
 fn section(settings: &mut Settings, of: impl Fn(&mut Section) -> &mut Schedule) -> Place<'_> {
     settings.section.as_mut().map_or(Place::Value(None), |section| Place::Schedule(of(section)))
@@ -175,6 +203,24 @@ macro_rules! partner_numbers {
                 concat!("coefficient of thermal expansion of the ", $key),
                 |s| Place::Value($partner(s).map(|p| &mut p.thermal_expansion.0)),
             ),
+            Number::fixed(
+                concat!("growth.", $key, ".roughness"),
+                ROUGHNESS,
+                concat!("roughness Rz of the ", $ring, " ring and its seat together"),
+                |s| Place::Value($partner(s).and_then(|p| p.roughness.as_mut()).map(|length| &mut length.0)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".radial_load"),
+                LOAD,
+                concat!("radial load that loosens the ", $ring, " ring"),
+                |s| Place::Value($partner(s).and_then(|p| p.radial_load.as_mut()).map(|load| &mut load.0)),
+            ),
+            Number::fixed(
+                concat!("growth.", $key, ".width"),
+                WIDTH,
+                concat!("width of the ", $ring, " ring"),
+                |s| Place::Value($partner(s).and_then(|p| p.width.as_mut()).map(|length| &mut length.0)),
+            ),
             // A package has it as an input.
             Number::checked(concat!("growth.", $key, ".rise"), RISE, |s| {
                 $partner(s).map_or(Place::Value(None), |p| Place::Schedule(&mut p.rise))
@@ -198,12 +244,12 @@ pub const NUMBERS: &[Number<Settings>] = {
         Number::checked("growth.outer", RISE, |s| section(s, |section| &mut section.outer)),
         Number::checked("growth.balls", RISE, |s| section(s, |section| &mut section.balls)),
     ];
-    const SHAFT: [Number<Settings>; 9] = partner_numbers!(shaft, "shaft", "inner");
-    const HOUSING: [Number<Settings>; 9] = partner_numbers!(housing, "housing", "outer");
+    const SHAFT: [Number<Settings>; 12] = partner_numbers!(shaft, "shaft", "inner");
+    const HOUSING: [Number<Settings>; 12] = partner_numbers!(housing, "housing", "outer");
     let [a, b, c] = RISES;
-    let [d, e, f, g, h, i, j, k, l] = SHAFT;
-    let [m, n, o, p, q, r, s, t, u] = HOUSING;
-    &[a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u]
+    let [d, e, f, g, h, i, j, k, l, m, n, o] = SHAFT;
+    let [p, q, r, s, t, u, v, w, x, y, z, last] = HOUSING;
+    &[a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, last]
 };
 
 impl Section {
@@ -278,6 +324,22 @@ impl Partner {
             Range::closed(bottom * (1.0 + LEAST_WALL), 1e3, "m")
         };
         range.check(&format!("{key}.diameter"), seat)?;
+        let lost = [("roughness", self.roughness.is_some()), ("radial_load", self.radial_load.is_some())];
+        if let Some((name, _)) = lost.iter().find(|(_, given)| *given && self.interference.is_none()) {
+            let why = "needed for what is lost of it: the interference of the fit";
+            return Err(SceneError::conflict(format!("{key}.interference"), format!("{why} ({name})")));
+        }
+        match (self.radial_load.is_some(), self.width.is_some(), is_shaft) {
+            (true, _, false) => {
+                let why = "the load loosens inner rings: leave it out";
+                return Err(SceneError::conflict(format!("{key}.radial_load"), why));
+            }
+            (true, false, true) => {
+                let why = "needed with a radial_load: the width of the ring";
+                return Err(SceneError::conflict(format!("{key}.width"), why));
+            }
+            _ => {}
+        }
         if is_shaft {
             let bore = self.bore.map_or(0.0, |bore| bore.0);
             return Range::closed(0.0, seat * (1.0 - LEAST_WALL), "m").check(&format!("{key}.bore"), bore);

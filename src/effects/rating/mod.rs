@@ -49,8 +49,12 @@ pub struct Section {
     pub fatigue_load_limit: Option<Force>,
     /// [m2/s] kinematic viscosity of the lubricant where it runs, that of the oil of `[film]` if not given; with `contamination` it gives the modified life.
     pub viscosity: Option<KinematicViscosity>,
+    /// [-] viscosity ratio kappa, in place of `viscosity`.
+    pub viscosity_ratio: Option<f64>,
     /// [-] contamination factor e_C: 0 is very dirty, 1 is clean.
     pub contamination: Option<f64>,
+    /// [-] life factor of a maker, in place of a_ISO: the modified life is the reference life times it, and times the factor of `reliability`.
+    pub life_factor: Option<f64>,
     /// [-] share of bearings that reach the modified life, 0.9 to 0.99.
     pub reliability: f64,
     /// The race that the load stands still on; found from how load and races turn if not given.
@@ -64,7 +68,9 @@ impl Default for Section {
             static_load_rating: None,
             fatigue_load_limit: None,
             viscosity: None,
+            viscosity_ratio: None,
             contamination: None,
+            life_factor: None,
             reliability: 0.9,
             load_rests_on: None,
         }
@@ -119,8 +125,6 @@ pub struct Settings {
 impl Keys for Settings {}
 
 const LOAD: Range = Range::above(0.0, 1e9, "N");
-/// \[rad] largest contact angle of bearings that these formulas are of; beyond are thrust bearings.
-const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
 
 fn force(settings: &mut Settings, of: fn(&mut Section) -> &mut Option<Force>) -> Place<'_> {
     Place::Value(settings.section.as_mut().and_then(|section| of(section).as_mut()).map(|force| &mut force.0))
@@ -153,12 +157,38 @@ pub struct Rating {
     static_ball_load: f64,
     /// The race that the load stands still on, as the scene has it.
     load_rests_on: Option<LoadRests>,
-    /// [m2/s], [-] viscosity and contamination.
-    lubrication: Option<(f64, f64)>,
+    /// Source of the modified life, where it is asked for.
+    modified: Option<Modified>,
+    /// [-] part of the load ratio that a_ISO is of.
+    load_share: f64,
     /// [-] factor of reliability.
     reliability: f64,
     /// \[m] pitch diameter.
     pitch_diameter: f64,
+}
+
+/// Source of the factor of the modified life.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Modified {
+    /// [m2/s], [-] viscosity and contamination.
+    Viscosity(f64, f64),
+    /// [-], [-] viscosity ratio and contamination.
+    Ratio(f64, f64),
+    /// [-] a factor that is given.
+    Given(f64),
+}
+
+impl Section {
+    /// Where the factor of the modified life is from, in oil of a film with a kinematic viscosity [m2/s].
+    fn modified(&self, oil: Option<f64>) -> Option<Modified> {
+        let viscosity = self.viscosity.map(|viscosity| viscosity.0).or(oil);
+        let ratio =
+            self.viscosity_ratio.zip(self.contamination).map(|(ratio, dirt)| Modified::Ratio(ratio, dirt));
+        let given = self.life_factor.map(Modified::Given).or(ratio);
+        given.or(viscosity
+            .zip(self.contamination)
+            .map(|(viscosity, dirt)| Modified::Viscosity(viscosity, dirt)))
+    }
 }
 
 impl Settings {
@@ -186,7 +216,8 @@ impl Settings {
             ball_ratings: geometry.ball_ratings(dynamic),
             static_ball_load: own * (static_load_rating / own_rating),
             load_rests_on: section.load_rests_on,
-            lubrication: section.viscosity.map(|viscosity| viscosity.0).or(oil).zip(section.contamination),
+            modified: section.modified(oil),
+            load_share: geometry.load_share(),
             reliability: standard::reliability_factor(section.reliability),
             pitch_diameter: geometry.pitch_diameter,
         })
@@ -241,10 +272,19 @@ impl Rating {
         let load_rests_on = self.load_rests_on.or(found).unwrap_or_default();
         let reference = self.reference(rates, load_rests_on);
         let equivalent_load = self.dynamic_load_rating / reference.cbrt();
-        let modified = self.lubrication.map(|(viscosity, contamination)| {
-            let ratio = viscosity / standard::reference_viscosity(rates.speed, self.pitch_diameter);
-            let factor =
-                standard::life_modification(ratio, contamination * self.fatigue_load_limit / equivalent_load);
+        let of_ratio = |ratio: f64, contamination: f64| {
+            let load_ratio = contamination * self.fatigue_load_limit / equivalent_load;
+            standard::life_modification(ratio, self.load_share * load_ratio)
+        };
+        let modified = self.modified.map(|modified| {
+            let factor = match modified {
+                Modified::Viscosity(viscosity, contamination) => {
+                    let needed = standard::reference_viscosity(rates.speed, self.pitch_diameter);
+                    of_ratio(viscosity / needed, contamination)
+                }
+                Modified::Ratio(ratio, contamination) => of_ratio(ratio, contamination),
+                Modified::Given(factor) => factor,
+            };
             (self.reliability * factor * reference).min(LONGEST)
         });
         let static_safety = (self.static_ball_load / rates.largest).min(SAFEST);
@@ -302,6 +342,12 @@ impl Effect for Settings {
             "share of bearings that reach the modified life",
             |s| Place::Value(s.section.as_mut().map(|section| &mut section.reliability)),
         ),
+        Number::fixed("rating.viscosity_ratio", Range::above(0.0, 100.0, ""), "viscosity ratio kappa", |s| {
+            Place::Value(s.section.as_mut().and_then(|section| section.viscosity_ratio.as_mut()))
+        }),
+        Number::fixed("rating.life_factor", Range::above(0.0, 100.0, ""), "life factor of a maker", |s| {
+            Place::Value(s.section.as_mut().and_then(|section| section.life_factor.as_mut()))
+        }),
     ];
 
     fn setting(&self) -> Option<String> {
@@ -320,22 +366,29 @@ impl Effect for Settings {
         let Some(section) = &self.section else {
             return Ok(());
         };
-        let missing = match (section.viscosity.is_some() || setup.oiled, section.contamination.is_some()) {
+        let refused = |key: &str, why: &str| Err(SceneError::conflict(format!("rating.{key}"), why));
+        let viscous = section.viscosity.is_some() || section.viscosity_ratio.is_some();
+        if section.viscosity.is_some() && section.viscosity_ratio.is_some() {
+            return refused("viscosity_ratio", "it stands in place of viscosity: give one of both");
+        }
+        if section.life_factor.is_some() {
+            return match viscous || section.contamination.is_some() {
+                true => refused(
+                    "life_factor",
+                    "it stands in place of a_ISO: leave out viscosity, viscosity_ratio and contamination",
+                ),
+                false => Ok(()),
+            };
+        }
+        let missing = match (viscous || setup.oiled, section.contamination.is_some()) {
             (false, true) => Some("viscosity"),
-            (true, false) if section.viscosity.is_some() => Some("contamination"),
+            (true, false) if viscous => Some("contamination"),
             _ => None,
         };
         if let Some(missing) = missing {
-            let why = "the modified life needs contamination, and a viscosity or the oil of a [film]; without both there is none";
-            return Err(SceneError::conflict(format!("rating.{missing}"), why));
-        }
-        let angle = setup.bearing.contact_angle.map_or(0.0, |angle| angle.0);
-        if angle > STEEPEST * (1.0 + 1e-12) {
-            let why = format!(
-                "bearing.contact_angle = {angle} rad is that of a thrust bearing, which has other formulas: allowed is up to \
-                 {STEEPEST:.4} rad"
-            );
-            return Err(SceneError::conflict("rating", why));
+            let why = "the modified life needs contamination, and a viscosity, a viscosity_ratio or the oil of a [film], or life_factor alone; without them there \
+                       is none";
+            return refused(missing, why);
         }
         Ok(())
     }
@@ -371,7 +424,7 @@ impl Effect for Settings {
                 |life| life.damage,
             ),
         ];
-        if section.contamination.is_some() {
+        if section.contamination.is_some() || section.life_factor.is_some() {
             rows.push((
                 "life.modified",
                 ONE,

@@ -1,5 +1,5 @@
-//! Formulas of ISO 281 (load ratings, modified life) and ISO/TS 16281 (life from the load of every ball) for radial and
-//! angular-contact ball bearings.
+//! Formulas of ISO 281 (load ratings, modified life) and ISO/TS 16281 (life from the load of every ball) for radial, angular-contact and
+//! thrust ball bearings.
 //!
 //! The standards were not at hand: formulas come from public codes that quote their clauses. One of these has the load ratings of
 //! single balls over `cos(alpha)^0.7`. Only `cos(alpha)` gives a bearing half of whose balls are loaded the life that ISO 281 gives
@@ -26,6 +26,10 @@ pub struct Geometry {
 const USUAL: [f64; 2] = [0.52, 0.53];
 /// [-] conformity of both races that the tables are computed with.
 const TABLE: f64 = 0.52;
+/// [-] conformity that the table of thrust bearings holds to, and that which it is computed with.
+const OF_THRUST: [f64; 2] = [0.54, 0.535];
+/// \[rad] largest contact angle of radial bearings; beyond are thrust bearings (ISO 281).
+const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
 /// [-] factor of contemporary steel and manufacture (ISO 281:2007, table 1, deep-groove and angular-contact bearings).
 const MATERIAL: f64 = 1.3;
 /// \[m] ball diameter from which loads grow less with size.
@@ -47,17 +51,36 @@ impl Geometry {
         self.ball_diameter * self.contact_angle.cos() / self.pitch_diameter
     }
 
-    /// [-] factor f_c of ISO 281, N and mm.
-    pub fn factor(&self) -> f64 {
-        let [inner, outer] = self.conformities;
+    /// Is it a thrust bearing?
+    pub fn is_thrust(&self) -> bool {
         // A last digit beyond is not beyond.
-        let usual = inner <= USUAL[0] * (1.0 + 1e-12) && outer <= USUAL[1] * (1.0 + 1e-12);
-        let conformities = if usual { [TABLE; 2] } else { self.conformities };
+        self.contact_angle > STEEPEST * (1.0 + 1e-12)
+    }
+
+    /// Conformities that the factors of the standard are computed with.
+    fn of_table(&self) -> [f64; 2] {
+        let [inner, outer] = self.conformities;
+        let (largest, table) =
+            if self.is_thrust() { ([OF_THRUST[0]; 2], OF_THRUST[1]) } else { (USUAL, TABLE) };
+        let usual = inner <= largest[0] * (1.0 + 1e-12) && outer <= largest[1] * (1.0 + 1e-12);
+        if usual { [table; 2] } else { self.conformities }
+    }
+
+    /// [-] factor f_c of ISO 281, N and mm, of radial bearings; of thrust bearings with that of the angle, `(cos alpha)^0.7 tan alpha`, which at 90 degrees
+    /// is f_c itself: 0.9 (1 - sin(alpha)/3) in place of 0.41 x 0.95 (ISO/TR 1281-1).
+    pub fn factor(&self) -> f64 {
+        let conformities = self.of_table();
         let (gamma, inner) = (self.gamma(), conformities[0]);
         let curvature = (2.0 * inner / (2.0 * inner - 1.0)).powf(0.41);
+        let flat = (1.0 - gamma).powf(1.39) / (1.0 + gamma).cbrt();
+        if self.is_thrust() {
+            let sine = self.contact_angle.sin();
+            let size = (self.ball_diameter / self.pitch_diameter).powf(0.3);
+            let both = (1.0 + favour(gamma, conformities).powf(10.0 / 3.0)).powf(-0.3);
+            return 98.0665 * 0.9 * (1.0 - sine / 3.0) * sine * curvature * size * flat * both;
+        }
         let both = (1.0 + (1.04 * favour(gamma, conformities)).powf(10.0 / 3.0)).powf(-0.3);
-        98.0665 * 0.41 * 0.95 * curvature * gamma.powf(0.3) * (1.0 - gamma).powf(1.39) / (1.0 + gamma).cbrt()
-            * both
+        98.0665 * 0.41 * 0.95 * curvature * gamma.powf(0.3) * flat * both
     }
 
     /// \[N] basic dynamic load rating C of a single-row bearing (ISO 281).
@@ -68,16 +91,18 @@ impl Geometry {
         } else {
             3.647 * millimetres.powf(1.4)
         };
-        MATERIAL
-            * self.factor()
-            * self.contact_angle.cos().powf(0.7)
-            * (self.balls as f64).powf(2.0 / 3.0)
-            * size
+        let angle = if self.is_thrust() { 1.0 } else { self.contact_angle.cos().powf(0.7) };
+        MATERIAL * self.factor() * angle * (self.balls as f64).powf(2.0 / 3.0) * size
     }
 
     /// \[N] loads of a rolling element that a race stands a million revolutions: inner and outer (ISO/TS 16281:2008, 4.3), of a
     /// bearing with a dynamic load rating \[N].
     pub fn ball_ratings(&self, dynamic_load_rating: f64) -> [f64; 2] {
+        if self.is_thrust() {
+            let ratio = favour(self.gamma(), self.conformities).powf(10.0 / 3.0);
+            let single = dynamic_load_rating / (self.balls as f64 * self.contact_angle.sin());
+            return [ratio, 1.0 / ratio].map(|ratio| single * (1.0 + ratio).powf(0.3));
+        }
         let ratio = 1.044 * favour(self.gamma(), self.conformities);
         let single = dynamic_load_rating / (self.balls as f64 * self.contact_angle.cos());
         [
@@ -109,10 +134,16 @@ impl Geometry {
         })
     }
 
-    /// \[N] basic static load rating C_0 (ISO 76: the most loaded ball carries five times the mean) of the largest load of a ball
-    /// \[N].
+    /// \[N] basic static load rating C_0 (ISO 76: the most loaded ball of a radial bearing carries five times the mean, all of a thrust bearing the same)
+    /// of the largest load of a ball \[N].
     pub fn static_load_rating(&self, ball_load: f64) -> f64 {
-        0.2 * self.balls as f64 * self.contact_angle.cos() * ball_load
+        let (sine, cosine) = self.contact_angle.sin_cos();
+        self.balls as f64 * ball_load * if self.is_thrust() { sine } else { 0.2 * cosine }
+    }
+
+    /// [-] part of the load ratio that a_ISO is of (ISO 281:2007, eq. 31 to 33, and 37 to 39 of thrust bearings).
+    pub fn load_share(&self) -> f64 {
+        if self.is_thrust() { 1.0 / 3.0 } else { 1.0 }
     }
 }
 
@@ -128,8 +159,8 @@ pub fn reference_life(ratings: [f64; 2], loads: [f64; 2]) -> f64 {
     (wear(0) + wear(1)).powf(-1.0 / SHARE)
 }
 
-/// [-] life modification factor a_ISO of radial ball bearings (ISO 281:2007, eq. 31 to 33): viscosity ratio kappa, and contamination
-/// factor times fatigue load limit over equivalent load.
+/// [-] life modification factor a_ISO of ball bearings (ISO 281:2007, eq. 31 to 33): viscosity ratio kappa, and contamination
+/// factor times fatigue load limit over equivalent load, of a thrust bearing a third of that ([`Geometry::load_share`]).
 pub fn life_modification(viscosity_ratio: f64, load_ratio: f64) -> f64 {
     const LARGEST: f64 = 50.0;
     let kappa = viscosity_ratio.clamp(0.1, 4.0);
@@ -215,5 +246,43 @@ mod tests {
         let rpm = std::f64::consts::PI / 30.0;
         let [below, above] = [999.999, 1000.0].map(|n| reference_viscosity(n * rpm, 50e-3));
         assert!((below / above - 1.0).abs() < 0.03, "{below} {above}");
+    }
+
+    /// Factors f_c of thrust ball bearings of 90 degrees over `D/D_pw` (ISO 281:2007, table 4, as recalled), and f_0 of ISO 76.
+    #[test]
+    fn published_number_factors_of_thrust_bearings() {
+        for (ratio, published) in
+            [(0.01, 36.7), (0.02, 45.2), (0.06, 62.9), (0.1, 73.3), (0.2, 90.2), (0.3, 101.9)]
+        {
+            let geometry = Geometry {
+                balls: 12,
+                ball_diameter: 1e-3,
+                pitch_diameter: 1e-3 / ratio,
+                contact_angle: std::f64::consts::FRAC_PI_2,
+                conformities: [0.54; 2],
+            };
+            assert!((geometry.factor() - published).abs() < 0.051, "{ratio}: {}", geometry.factor());
+            let steel = 2.0 * (1.0 - 0.3 * 0.3) / 207e9;
+            let static_factor = 1e-6 * geometry.static_ball_load(steel) / 1e-6;
+            assert!((static_factor - 61.6).abs() < 0.051, "{static_factor}");
+        }
+    }
+
+    /// An axial load in equal shares: life is that of ISO 281, (C/F)^3, at any angle.
+    #[test]
+    fn closed_form_a_thrust_bearing_in_equal_shares_has_the_life_of_its_load_rating() {
+        for angle in [50f64, 60.0, 75.0, 90.0] {
+            let geometry = Geometry {
+                balls: 13,
+                ball_diameter: 7.938e-3,
+                pitch_diameter: 36e-3,
+                contact_angle: angle.to_radians(),
+                conformities: [0.54; 2],
+            };
+            let (rating, force) = (28e3, 4e3);
+            let load = force / (13.0 * angle.to_radians().sin());
+            let life = reference_life(geometry.ball_ratings(rating), [load; 2]);
+            assert!((life / (rating / force).powi(3) - 1.0).abs() < 1e-12, "{angle}: {life}");
+        }
     }
 }

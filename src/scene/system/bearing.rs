@@ -60,11 +60,14 @@ pub struct Shared {
     pub catalogue: Catalogue,
 }
 
+/// Scene of a ball bearing, as a text, and the mass of its outer ring \[kg]; or why there is none.
+type Looked = Result<(String, f64), String>;
+
 /// Where bearings are looked up by their designation. Packages have none, so that their library is spared the tables and their estimates.
 #[derive(Clone, Copy)]
 pub struct Catalogue {
-    /// Scene of a ball bearing, as a text, and the mass of its outer ring \[kg]; or why there is none.
-    pub balls: fn(&str) -> Result<(String, f64), String>,
+    /// Ball bearings by their designation, in files of a folder.
+    pub balls: fn(&str, &Path) -> Looked,
     /// Keys of the rollers of a roller bearing, as a text; none of another one.
     pub rollers: fn(&str) -> Option<Result<String, CatalogueError>>,
 }
@@ -141,9 +144,10 @@ impl WrittenBearing {
                 (text, path.parent().unwrap_or(Path::new("")).to_path_buf(), Some(file))
             }
             (None, Some(designation)) => {
-                let (text, outer_ring_mass) = (given.catalogue.balls)(&designation).map_err(|why| {
-                    inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")))
-                })?;
+                let (text, outer_ring_mass) =
+                    (given.catalogue.balls)(&designation, &given.folder).map_err(|why| {
+                        inside(SceneError::conflict("bearing.catalogue", format!("{designation}: {why}")))
+                    })?;
                 estimated_mass = (mounting.axial == AxialSeat::Free).then_some(outer_ring_mass);
                 (text, given.folder.clone(), None)
             }

@@ -174,8 +174,14 @@ pub struct SystemLoad {
     pub output_interval: Time,
 }
 
-/// The catalogue that files are read with.
-const CATALOGUE: Catalogue = Catalogue { balls: catalogue::scene_of, rollers: catalogue::rollers_of };
+/// The catalogue that files are read with: the shelf beside them, then the table.
+const CATALOGUE: Catalogue = Catalogue {
+    balls: |name, folder| catalogue::scene_of(name, Some(folder)),
+    rollers: catalogue::rollers_of,
+};
+/// The same without the shelf, for texts that stand alone.
+const TABLE: Catalogue =
+    Catalogue { balls: |name, _| catalogue::scene_of(name, None), rollers: catalogue::rollers_of };
 
 /// The file as it is written.
 #[derive(Deserialize)]
@@ -255,7 +261,7 @@ impl SystemScene {
     /// # Errors
     /// See [`SceneError`].
     pub fn edited(text: &str) -> Result<Self, SceneError> {
-        Self::alone(text, CATALOGUE)
+        Self::alone(text, TABLE)
     }
 
     /// The same, with the catalogue that its bearings are looked up in.
@@ -269,7 +275,7 @@ impl SystemScene {
     /// See [`SceneError`].
     pub fn of_package(text: &str) -> Result<Self, SceneError> {
         let none = Catalogue {
-            balls: |_| Err("a package has the scenes of its bearings, and no catalogue".into()),
+            balls: |_, _| Err("a package has the scenes of its bearings, and no catalogue".into()),
             rollers: |_| None,
         };
         Self::alone(text, none)
