@@ -206,7 +206,9 @@ pub fn package(
     fmi: u32,
 ) -> PyResult<()> {
     let version = version(fmi)?;
-    py.detach(|| write_fmu(&scene.resolved()?, version, name, &columns, &libraries, &path).map_err(file))
+    py.detach(|| {
+        write_fmu(&scene.resolved()?, &version.into(), name, &columns, &libraries, &path).map_err(file)
+    })
 }
 
 /// Runs the study of accuracy against CPU time into a directory; gives the files.

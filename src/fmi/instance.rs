@@ -129,6 +129,11 @@ impl Instance {
         self.unit.rows()
     }
 
+    /// Are its variables arrays, where FMI has them?
+    pub fn has_arrays(&self) -> bool {
+        self.unit.has_arrays()
+    }
+
     /// Copy of the slave at the same point; its messages go elsewhere.
     pub fn copy(&self, log: Log) -> Self {
         Self {

@@ -109,7 +109,7 @@ pub fn system_page(system: &System, wanted: Wanted<'_>) -> String {
          </table>\n\
          <h2>Parameters</h2>\n<table><tr><th>name</th><th>unit</th><th>start (range), may be set</th><th>meaning</th></tr>\n{parameters}</table>\n\
          <h2>System</h2>\n<pre>{source}</pre>\n\
-         <p>Licences of what this package is linked from: <a href=\"licenses/licenses.txt\">licenses/licenses.txt</a>.</p>\n\
+         <p>Licences of what this package is linked from: <a href=\"licenses/license.txt\">licenses/license.txt</a>.</p>\n\
          </body></html>\n",
         title = escape(title),
         bearings = scene.bearings.len(),
@@ -192,7 +192,7 @@ pub fn page(scene: &Scene, wanted: Wanted<'_>) -> String {
          <h2>Parameters</h2>\n<table><tr><th>name</th><th>unit</th><th>start (range), may be set</th><th>meaning</th></tr>\n\
          {parameters}</table>\n\
          <h2>Scene</h2>\n<pre>{scene}</pre>\n\
-         <p>Licences of what this package is linked from: <a href=\"licenses/licenses.txt\">licenses/licenses.txt</a>.</p>\n\
+         <p>Licences of what this package is linked from: <a href=\"licenses/license.txt\">licenses/license.txt</a>.</p>\n\
          </body></html>\n",
         orientation = orientation(scene.interface.orientation),
         balls = scene.bearing.balls,

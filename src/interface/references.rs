@@ -1,5 +1,10 @@
-//! Value references of FMI 3.0: the rows have those that they have in 2.0; time and the accelerations of inputs come behind them.
+//! Value references of FMI 3.0: the rows have those that they have in 2.0; time, the accelerations of inputs and arrays, where there are
+//! some, come behind them.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use super::arrays::{self, Array, Element};
 use super::variables::{Causality, InputKind, Source, Variable};
 use crate::schema::variable_units::{self as units, Unit};
 
@@ -20,6 +25,7 @@ pub struct References {
     rows: usize,
     /// Rows whose rates are inputs, too.
     rates: Vec<usize>,
+    arrays: Vec<Array>,
 }
 
 /// An input that is the rate of another one.
@@ -34,10 +40,70 @@ pub struct RateRow {
 }
 
 impl References {
-    /// Those of a table.
+    /// Those of a table, of scalars alone.
     pub fn new(rows: &[Variable]) -> Self {
         let rates = (0..rows.len()).filter(|index| takes_rate(rows, &rows[*index])).collect();
-        Self { rows: rows.len(), rates }
+        Self { rows: rows.len(), rates, arrays: vec![] }
+    }
+
+    /// Those of a table, with arrays or without (`interface.arrays`).
+    pub fn of(rows: &[Variable], arrays: bool) -> Self {
+        if arrays { Self::with_arrays(rows) } else { Self::new(rows) }
+    }
+
+    fn with_arrays(rows: &[Variable]) -> Self {
+        let scalars = Self::new(rows);
+        let rates: Vec<_> =
+            scalars.rates().map(|(reference, row)| (reference, &rows[row], rate_row(&rows[row]))).collect();
+        let own = rows.iter().enumerate().map(|(reference, row)| Element {
+            reference: reference as u32,
+            name: &row.name,
+            description: &row.description,
+            row,
+            unit: row.unit.name,
+        });
+        let of_rates = rates.iter().map(|(reference, row, rate)| Element {
+            reference: *reference as u32,
+            name: &rate.name,
+            description: &rate.description,
+            row,
+            unit: rate.unit.name,
+        });
+        let all: Vec<_> = own.chain(of_rates).collect();
+        Self { arrays: arrays::arrays(&all), ..scalars }
+    }
+
+    /// The arrays with their references.
+    pub fn arrays(&self) -> impl Iterator<Item = (usize, &Array)> {
+        (self.rows + 1 + self.rates.len()..).zip(&self.arrays)
+    }
+
+    /// The scalars that a reference is of: the elements of an array, or itself.
+    pub fn scalars<'a>(&'a self, reference: &'a u32) -> &'a [u32] {
+        let index = (*reference as usize).checked_sub(self.rows + 1 + self.rates.len());
+        let array = index.and_then(|index| self.arrays.get(index));
+        array.map_or(std::slice::from_ref(reference), |array| &array.elements)
+    }
+
+    /// How many scalars references are of.
+    pub fn number(&self, references: &[u32]) -> usize {
+        references.iter().map(|reference| self.scalars(reference).len()).sum()
+    }
+
+    /// The scalars that references are of, one after another.
+    pub fn spread<'a>(&self, references: &'a [u32]) -> Cow<'a, [u32]> {
+        if self.arrays.is_empty() {
+            return Cow::Borrowed(references);
+        }
+        references.iter().flat_map(|reference| self.scalars(reference)).copied().collect()
+    }
+
+    /// The arrays all of whose elements a package tells of, with their references, by the reference of each element.
+    pub fn whole_arrays(&self, told: impl Fn(usize) -> bool) -> BTreeMap<usize, (usize, &Array)> {
+        let whole = self.arrays().filter(|(_, array)| array.elements.iter().all(|one| told(*one as usize)));
+        whole
+            .flat_map(|(own, array)| array.elements.iter().map(move |one| (*one as usize, (own, array))))
+            .collect()
     }
 
     /// That of the independent variable.

@@ -66,26 +66,37 @@ fn member(name: &str, of_race: bool) -> Option<(&str, Member)> {
     Some((terminal, Member { variable: name.into(), name: short, kind }))
 }
 
-/// The terminals among rows, with some of the outputs.
-pub fn terminals(rows: &[Variable], wanted: Wanted<'_>) -> Vec<Terminal> {
+/// The terminals among rows, with some of the outputs; variables are arrays where these are all there.
+pub fn terminals(rows: &[Variable], arrays: bool, wanted: Wanted<'_>) -> Vec<Terminal> {
+    let references = References::of(rows, arrays);
+    let whole = references.whole_arrays(|one| rows.get(one).is_none_or(|row| is_exported(row, wanted)));
     let mut all: Vec<Terminal> = vec![];
-    let mut add = |name: &str, of_race: bool| {
+    let mut add = |reference: usize, name: &str, of_race: bool| {
+        let array = whole.get(&reference).map(|(_, array)| *array);
+        // An array stands where its first element would.
+        if array.is_some_and(|array| array.elements.first() != Some(&(reference as u32))) {
+            return;
+        }
+        let name = array.map_or(name, |array| &array.name);
         let Some((terminal, member)) = member(name, of_race) else { return };
         match all.iter_mut().find(|one| one.name == terminal) {
             Some(one) => one.members.push(member),
             None => all.push(Terminal { name: terminal.into(), members: vec![member] }),
         }
     };
-    for row in rows.iter().filter(|row| row.causality != Causality::Parameter && is_exported(row, wanted)) {
+    for (reference, row) in rows.iter().enumerate() {
+        if row.causality == Causality::Parameter || !is_exported(row, wanted) {
+            continue;
+        }
         match row.source {
-            Source::Race(..) => add(&row.name, true),
+            Source::Race(..) => add(reference, &row.name, true),
             Source::Shaft(ShaftSource::Frame(..)) => {}
-            Source::Shaft(_) => add(&row.name, false),
+            Source::Shaft(_) => add(reference, &row.name, false),
             _ => {}
         }
     }
-    for (_, row) in References::new(rows).rates() {
-        add(&rate_row(&rows[row]).name, matches!(rows[row].source, Source::Race(..)));
+    for (reference, row) in references.rates() {
+        add(reference, &rate_row(&rows[row]).name, matches!(rows[row].source, Source::Race(..)));
     }
     all
 }

@@ -104,6 +104,14 @@ impl MachineScene {
         }
     }
 
+    /// Are variables of its package arrays, where FMI has them?
+    pub fn has_arrays(&self) -> bool {
+        match self {
+            Self::Bearing(scene) => scene.interface.arrays,
+            Self::Shaft(scene) => scene.interface.arrays,
+        }
+    }
+
     /// Notes for its reader, a sentence each.
     pub fn notes(&self) -> Vec<String> {
         match self {

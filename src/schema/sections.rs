@@ -388,7 +388,7 @@ pub enum Dependencies {
     Step,
 }
 
-/// Interface of the FMU.
+/// Interface of the FMU. A machine has arrays alone of it; all else is of each bearing.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Interface {
@@ -396,6 +396,9 @@ pub struct Interface {
     pub orientation: Orientation,
     /// Span that the lists of dependencies are about; those of a shaft with its bearings are always about the communication point.
     pub dependencies: Dependencies,
+    /// Are variables that differ in the number of a ball or in a component one array (`inner.force` in place of `inner.force.x`, `.y`, `.z`)? In packages of
+    /// FMI 3.0 alone, as 2.0 has no arrays. For masters that know them: some do not.
+    pub arrays: bool,
     /// Who gives each group of inputs: the scene's script or the master.
     pub inputs: InputGivers,
 }

@@ -26,5 +26,6 @@ mod scripts;
 mod several;
 mod system;
 mod version3;
+mod version3_arrays;
 mod version3_calls;
 mod version3_updates;

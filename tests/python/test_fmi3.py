@@ -1,6 +1,7 @@
 """Packages of FMI 3.0 in FMPy: validation, and the same results as those of FMI 2.0."""
 
 import os
+import shutil
 import zipfile
 from pathlib import Path
 
@@ -30,6 +31,49 @@ def outputs(package, steps=40, step=5e-5, **options):
     description = read_model_description(package)
     names = [v.name for v in description.modelVariables if v.causality == "output"]
     return simulate_fmu(package, stop_time=steps * step, output_interval=step, output=names, **options)
+
+
+def with_arrays(text):
+    """The same scene with arrays."""
+    if "[interface]\n" in text:
+        return text.replace("[interface]\n", "[interface]\narrays = true\n", 1)
+    return f"{text}\n[interface]\narrays = true\n"
+
+
+def elements(results, description):
+    """Results by the names of scalars: an array of FMPy has one column, which is split as its elements come in the table."""
+    sizes = {v.name: v.shape for v in description.modelVariables}
+    return {name: results[name].reshape(len(results), -1) for name in results.dtype.names if sizes.get(name)}
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_arrays_have_the_results_of_scalars_to_the_last_bit(scene, tmp_path):
+    text = (ROOT / "scenes" / scene).read_text()
+    if "per_ball_outputs" not in text and "shafts" not in scene:
+        text = text.replace("[effects]\n", "[effects]\nper_ball_outputs = true\n", 1)
+    packages = []
+    for name, form in [("scalars", text), ("arrays", with_arrays(text))]:
+        (tmp_path / f"{name}.toml").write_text(form)
+        packages.append(tmp_path / f"{name}.fmu")
+        roulement("fmu", tmp_path / f"{name}.toml", "-o", packages[-1], "--fmi", 3)
+        assert validate_fmu(str(packages[-1])) == []
+    scalars, arrays = (outputs(str(package)) for package in packages)
+    of = elements(arrays, read_model_description(str(packages[1])))
+    found = 0
+    for name in arrays.dtype.names:
+        # An array of vectors has its components last, one of every ball its balls.
+        if name not in of:
+            assert np.array_equal(arrays[name], scalars[name]), name
+            continue
+        head, _, tail = name.partition("ball.")
+        names = [f"{name}.{axis}" for axis in "wxyz"] if f"{name}.y" in scalars.dtype.names else None
+        names = names or [f"{head}ball[{k + 1}].{tail}" for k in range(of[name].shape[1])]
+        names = [one for one in names if one in scalars.dtype.names]
+        if names:
+            assert np.array_equal(of[name], np.column_stack([scalars[one] for one in names])), name
+            found += 1
+    assert found > 4 and ("shafts" in scene or "ball.inner.load" in of)
+    assert len(arrays.dtype.names) < 0.8 * len(scalars.dtype.names)
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -135,14 +179,22 @@ def test_an_importer_sets_inputs_within_steps(thrust_text, tmp_path):
 
 
 def validated(scene, directory):
+    """What FMPy finds in packages of a scene: 2.0, 3.0, and 3.0 with arrays."""
     result = roulement("fmu", ROOT / scene, "-o", directory / "probe.fmu", check=False)
     if result.returncode != 0:
         # Descriptions of sweeps and systems, and scenes that are part of others, have no package.
         return None
-    return [validate_fmu(package) for package in both(ROOT / scene, directory)]
+    # Beside the files that it names.
+    folder = directory / "arrays"
+    shutil.copytree((ROOT / scene).parent, folder)
+    (folder / "arrays.toml").write_text(with_arrays((ROOT / scene).read_text()))
+    arrays = folder / "arrays.fmu"
+    roulement("fmu", folder / "arrays.toml", "-o", arrays, "--fmi", 3)
+    terminals(arrays)
+    return [validate_fmu(package) for package in [*both(ROOT / scene, directory), str(arrays)]]
 
 
 @pytest.mark.skipif("ROULEMENT_LONG" not in os.environ, reason="long: scripts/soak")
 @pytest.mark.parametrize("scene", EVERY)
 def test_fmpy_finds_no_problem_in_any_scene_that_is_shipped(scene, tmp_path):
-    assert validated(scene, tmp_path) in (None, [[], []])
+    assert validated(scene, tmp_path) in (None, [[], [], []])

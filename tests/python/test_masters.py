@@ -130,6 +130,47 @@ def test_ecospy_runs_the_package_of_fmi_3(thrust, tmp_path):
         assert got == row
 
 
+ECOS_PAIR = """
+import ctypes, sys
+from pathlib import Path
+tbb = Path(sys.prefix) / "lib" / "libtbb.so.12"
+ctypes.CDLL(str(tbb), mode=ctypes.RTLD_GLOBAL)
+from ecospy import EcosSimulation, EcosSimulationStructure
+
+step, steps, name, packages = float(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4:]
+with EcosSimulationStructure() as structure:
+    for end, package in zip(["left", "right"], packages):
+        structure.add_model(end, package)
+    with EcosSimulation(structure=structure, step_size=step) as simulation:
+        simulation.init()
+        if len(packages) == 2:
+            simulation.set_real("right::inner.applied_force.x", 1000.0)
+        for _ in range(steps):
+            simulation.step()
+            print(*[repr(simulation.get_real(f"{end}::{name}")) for end, _ in zip(["left", "right"], packages)], flush=True)
+        simulation.terminate()
+"""
+
+
+def test_ecospy_runs_two_instances_of_fmi_3(thrust, tmp_path):
+    """Two instances of one package of FMI 3.0 under loads of their own: the first as when it is alone."""
+    package, _, _ = thrust
+    third = tmp_path / "third.fmu"
+    roulement("fmu", package.with_suffix(".toml"), "-o", third, "--fmi", 3)
+
+    def forces(*packages):
+        arguments = [sys.executable, "-c", ECOS_PAIR, repr(STEP), "200", "inner.force.x", *map(str, packages)]
+        run = subprocess.run(arguments, capture_output=True, text=True)
+        assert run.returncode == 0, run.stdout + run.stderr
+        lines = [line.split() for line in run.stdout.splitlines() if line and line[0] in "-0123456789"]
+        assert len(lines) == 200
+        return [[float(number) for number in line] for line in lines]
+
+    alone, pair = forces(third), forces(third, third)
+    assert [left for left, _ in pair] == [left for (left,) in alone]
+    assert math.isclose(pair[-1][1], -1000, rel_tol=0.02) and math.isclose(pair[-1][0], -1500, rel_tol=0.02)
+
+
 def test_fmi_rs_runs_the_package():
     """Runs the tests of tests/fmi_rs: a master in Rust by the makers of FMPy, built here."""
     environment = os.environ | {
@@ -146,4 +187,5 @@ def test_fmi_rs_runs_the_package():
         text=True,
     )
     assert run.returncode == 0, run.stdout + run.stderr
-    assert "3 passed" in run.stdout and "2 passed" in run.stdout
+    # layout.rs, package.rs, version3.rs
+    assert run.stdout.count("2 passed") == 2 and "3 passed" in run.stdout

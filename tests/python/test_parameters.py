@@ -127,7 +127,7 @@ def test_the_model_description_is_complete(packages, drive):
         names = package.namelist()
         assert package.read("model.png").startswith(b"\x89PNG")
         page = package.read("documentation/index.html").decode()
-        licences = package.read("documentation/licenses/licenses.txt").decode()
+        licences = package.read("documentation/licenses/license.txt").decode()
     assert {"modelDescription.xml", "resources/scene.toml"} <= set(names)
     units = {unit.get("name"): {d.get("name") for d in unit.findall("DisplayUnit")} for unit in root.iter("Unit")}
     types = {kind.get("name"): kind[0].attrib for kind in root.iter("SimpleType")}

@@ -34,7 +34,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::auto;
-use roulement::interface::model_description::{Version, all, render_as};
+use roulement::interface::model_description::{Edition, Version, all, render_as};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement_cli::kinds::{Kind, other_kind};
@@ -96,6 +96,15 @@ enum Command {
         /// Version of FMI.
         #[arg(long, default_value = "2", value_name = "VERSION", value_parser = version())]
         fmi: Version,
+        /// Author of the model, and the organisation: in the model description.
+        #[arg(long)]
+        author: Option<String>,
+        /// Copyright of the model; that of the library is in the licences of the package.
+        #[arg(long)]
+        copyright: Option<String>,
+        /// When it was made, in UTC, such as 2026-11-28T15:00:00Z; nothing if not given: the same scene then makes the same bytes.
+        #[arg(long, value_parser = date)]
+        date: Option<String>,
     },
     /// Write packages that are connected, as an SSP file and as an OSP system structure for libcosim, from one description.
     System(system::Options),
@@ -120,6 +129,25 @@ enum Command {
 /// Reads a version of FMI.
 fn version() -> impl TypedValueParser<Value = Version> {
     PossibleValuesParser::new(["2", "3"]).map(|text| if text == "3" { Version::V3 } else { Version::V2 })
+}
+
+/// Reads a date with its time as model descriptions have it.
+fn date(text: &str) -> Result<String, String> {
+    const FORM: &str = "0000-00-00T00:00:00Z";
+    let fits = |(own, form): (char, char)| if form == '0' { own.is_ascii_digit() } else { own == form };
+    let formed = text.chars().count() == FORM.len() && text.chars().zip(FORM.chars()).all(fits);
+    let number =
+        |at: std::ops::Range<usize>| text.get(at).and_then(|digits| digits.parse().ok()).unwrap_or(0);
+    let within = |at, range: std::ops::RangeInclusive<u32>| range.contains(&number(at));
+    match formed
+        && within(5..7, 1..=12)
+        && within(8..10, 1..=31)
+        && within(11..13, 0..=23)
+        && within(14..16, 0..=59)
+    {
+        true => Ok(text.to_string()),
+        false => Err("a date and time in UTC is needed, such as 2026-11-28T15:00:00Z".to_string()),
+    }
 }
 
 /// Reads a scene and finds out its effects where it asks for that; what its reader should know goes to standard error.
@@ -187,10 +215,11 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Modes(options) => modes::run(&options)?,
         Command::Rating(options) => rating::run(&options)?,
         Command::Cage(options) => cage::run(&options)?,
-        Command::Fmu { scene, output, library, name, columns, fmi } => {
+        Command::Fmu { scene, output, library, name, columns, fmi, author, copyright, date } => {
             let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
             let name = name.unwrap_or_else(|| name_of(&output));
-            write_fmu(&load_for(&scene, true)?, fmi, &name, &columns, &libraries, &output)?;
+            let edition = Edition { version: fmi, author, copyright, date };
+            write_fmu(&load_for(&scene, true)?, &edition, &name, &columns, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
         Command::Scene(options) => scene::run(&options)?,
@@ -208,7 +237,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Describe { scene, fmi } => {
             let name = name_of(&scene);
             let machine = Machine::new(&load_for(&scene, true)?)?;
-            say(&render_as(fmi, &machine, &name, &all)?.xml)?;
+            say(&render_as(&fmi.into(), &machine, &name, &all)?.xml)?;
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -17,7 +17,7 @@ use zip::write::SimpleFileOptions;
 
 use roulement::fmi::SCENE_FILE;
 use roulement::interface::documentation;
-use roulement::interface::model_description::{ModelDescription, Version, identifier, render_as};
+use roulement::interface::model_description::{Edition, ModelDescription, Version, identifier, render_as};
 use roulement::interface::terminals;
 use roulement::interface::variables::{Causality, MachineVariables, Variable};
 use roulement::scene::machine::MachineScene;
@@ -127,14 +127,14 @@ struct Content<'a> {
     page: String,
 }
 
-/// Writes the package of a machine for a version of the standard under a name, with one library per platform, to `output`; an existing file is replaced only by a complete one.
+/// Writes the package of a machine as an edition under a name, with one library per platform, to `output`; an existing file is replaced only by a complete one.
 /// It has those outputs alone whose names fit one of the patterns, as [`crate::report::results::Choice`] has them; all if there is none.
 ///
 /// # Errors
 /// See [`PackageError`].
 pub fn write_fmu(
     scene: &MachineScene,
-    version: Version,
+    edition: &Edition,
     name: &str,
     columns: &[String],
     libraries: &[PathBuf],
@@ -144,14 +144,14 @@ pub fn write_fmu(
     let machine = Machine::new(scene)?;
     let variables = MachineVariables::new(&machine);
     let wanted = wanted(columns, variables.rows())?;
-    let terminals = terminals::render(&terminals::terminals(variables.rows(), &wanted))?;
-    let description = render_as(version, &machine, name, &wanted)?;
+    let terminals = terminals::render(&terminals::terminals(variables.rows(), scene.has_arrays(), &wanted))?;
+    let description = render_as(edition, &machine, name, &wanted)?;
     let page = match &machine {
         Machine::Bearing(bearing) => documentation::page(bearing.scene(), &wanted),
         Machine::Shaft(system) => documentation::system_page(system, &wanted),
     };
     write(
-        &Content { version, description, terminals, source: scene.source(), page },
+        &Content { version: edition.version, description, terminals, source: scene.source(), page },
         name,
         &libraries,
         output,
@@ -214,7 +214,7 @@ fn write(
     if version == Version::V3 {
         add("terminalsAndIcons/terminalsAndIcons.xml", content.terminals.as_bytes())?;
     }
-    add("documentation/licenses/licenses.txt", include_bytes!("../../../assets/licenses.txt"))?;
+    add("documentation/licenses/license.txt", include_bytes!("../../../assets/licenses.txt"))?;
     add("documentation/index.html", content.page.as_bytes())?;
     let bytes = zip.finish()?.into_inner();
 

@@ -90,7 +90,7 @@ pub fn prepare(
                     libraries.push(library_beside_executable().map_err(|why| failed(why.to_string()))?);
                 }
                 // Masters of both structures read FMI 2.0; of FMI 3.0 libcosim reads nothing.
-                write_fmu(&scene.into(), Version::V2, name, &[], &libraries, &package)
+                write_fmu(&scene.into(), &Version::V2.into(), name, &[], &libraries, &package)
                     .map_err(|why| failed(why.to_string()))?;
                 regular::bytes(&package, LARGEST_BINARY).map_err(file_error("read", &package))?
             }

@@ -119,6 +119,11 @@ impl Unit {
         self.variables.rows()
     }
 
+    /// Are its variables arrays, where FMI has them?
+    pub fn has_arrays(&self) -> bool {
+        self.scene.has_arrays()
+    }
+
     /// Value references of the inputs.
     pub fn inputs(&self) -> &[usize] {
         self.variables.input_references()

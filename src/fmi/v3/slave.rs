@@ -1,4 +1,6 @@
-//! An instance as version 3 sees it: values by references that may also be those of time and of rates.
+//! An instance as version 3 sees it: values by references that may also be those of time, of rates, and of arrays of all of them.
+
+use std::borrow::Cow;
 
 use super::updates::{Underway, Updates};
 use crate::fmi::directional::Known;
@@ -35,9 +37,9 @@ impl Slave {
         // There are no derivatives of inputs, but inputs that are the rates of others.
         instance.keeps_rates = true;
         let updates = updates.filter(|_| updates_are_offered(instance.rows()));
-        let references = References::new(instance.rows());
+        let references = References::of(instance.rows(), instance.has_arrays());
         let slave = Self { references, instance, updates, underway: None };
-        for reference in required {
+        for reference in required.iter().flat_map(|reference| slave.references.scalars(reference)) {
             if let Place::Row(row) = slave.place(*reference)?
                 && let Some(row) = slave.instance.rows().get(row)
                 && !matches!(row.causality, Causality::Input | Causality::Output)
@@ -55,11 +57,11 @@ impl Slave {
         }
     }
 
-    /// Are there as many values as the variables have?
-    fn check_number(references: &[u32], values: usize) -> Outcome {
-        match references.len() {
-            n if n == values => Ok(()),
-            n => error(format!("{n} variables have {n} values, not {values}")),
+    /// References of scalars, where there are as many values as variables have.
+    fn scalars<'a>(&self, references: &'a [u32], values: usize) -> Outcome<Cow<'a, [u32]>> {
+        match self.references.number(references) {
+            number if number == values => Ok(self.references.spread(references)),
+            number => error(format!("{} variables have {number} values, not {values}", references.len())),
         }
     }
 
@@ -72,9 +74,9 @@ impl Slave {
     /// # Errors
     /// As of [`Instance::get`], and if there are more or fewer values than that.
     pub fn get(&mut self, references: &[u32], kind: Kind, values: &mut [f64]) -> Outcome {
-        Self::check_number(references, values.len())?;
-        if kind != Kind::Real || self.are_rows(references) {
-            return self.instance.get(references, kind, values);
+        let references = self.scalars(references, values.len())?;
+        if kind != Kind::Real || self.are_rows(&references) {
+            return self.instance.get(&references, kind, values);
         }
         for (reference, value) in references.iter().zip(values) {
             match self.place(*reference)? {
@@ -91,10 +93,10 @@ impl Slave {
     /// # Errors
     /// As of [`Instance::set`], and if there are more or fewer values than variables; nothing is then set.
     pub fn set(&mut self, references: &[u32], kind: Kind, values: &[f64]) -> Outcome {
-        Self::check_number(references, values.len())?;
-        self.check_set(references)?;
-        if kind != Kind::Real || self.are_rows(references) {
-            return self.instance.set(references, kind, values);
+        let references = self.scalars(references, values.len())?;
+        self.check_set(&references)?;
+        if kind != Kind::Real || self.are_rows(&references) {
+            return self.instance.set(&references, kind, values);
         }
         let (mut rows, mut row_values, mut rates) = (vec![], vec![], vec![]);
         for (reference, value) in references.iter().zip(values) {
@@ -150,9 +152,9 @@ impl Slave {
         seed: &[f64],
         sensitivity: &mut [f64],
     ) -> Outcome {
-        Self::check_number(knowns, seed.len())?;
-        Self::check_number(unknowns, sensitivity.len())?;
-        self.instance.forward_derivative(unknowns, &self.knowns(knowns)?, seed, sensitivity)
+        let (knowns, unknowns) =
+            (self.scalars(knowns, seed.len())?, self.scalars(unknowns, sensitivity.len())?);
+        self.instance.forward_derivative(&unknowns, &self.knowns(&knowns)?, seed, sensitivity)
     }
 
     /// Weights of outputs times their derivatives by inputs or their rates.
@@ -166,9 +168,9 @@ impl Slave {
         seed: &[f64],
         sensitivity: &mut [f64],
     ) -> Outcome {
-        Self::check_number(unknowns, seed.len())?;
-        Self::check_number(knowns, sensitivity.len())?;
-        self.instance.adjoint_derivative(unknowns, &self.knowns(knowns)?, seed, sensitivity)
+        let (unknowns, knowns) =
+            (self.scalars(unknowns, seed.len())?, self.scalars(knowns, sensitivity.len())?);
+        self.instance.adjoint_derivative(&unknowns, &self.knowns(&knowns)?, seed, sensitivity)
     }
 
     /// First derivatives of outputs by time.
@@ -176,7 +178,12 @@ impl Slave {
     /// # Errors
     /// As of [`Instance::output_derivatives`], and if there are more or fewer values than variables.
     pub fn output_derivatives(&mut self, references: &[u32], orders: &[i32], values: &mut [f64]) -> Outcome {
-        Self::check_number(references, values.len())?;
-        self.instance.output_derivatives(references, orders, values)
+        let scalars = self.scalars(references, values.len())?;
+        // An order is of a whole variable.
+        let each = references.iter().zip(orders);
+        let orders: Vec<i32> = each
+            .flat_map(|(reference, order)| self.references.scalars(reference).iter().map(|_| *order))
+            .collect();
+        self.instance.output_derivatives(&scalars, &orders, values)
     }
 }

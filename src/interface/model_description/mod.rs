@@ -66,6 +66,34 @@ pub enum Version {
     V3,
 }
 
+/// What a package is beside its scene: the version of the standard that it follows, and what it says of who made it and when.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Edition {
+    /// Version of the standard.
+    pub version: Version,
+    /// Author of the model, and the organisation.
+    pub author: Option<String>,
+    /// Copyright of the model; that of the library is in its licences.
+    pub copyright: Option<String>,
+    /// When it was made, `2026-11-28T15:00:00Z`. Nothing if not given: the same scene then makes the same bytes.
+    pub date: Option<String>,
+}
+
+impl Edition {
+    /// Attributes of a model description.
+    fn attributes(&self) -> impl Iterator<Item = (&str, &str)> {
+        let Self { author, copyright, date, .. } = self;
+        let all = [("author", author), ("copyright", copyright), ("generationDateAndTime", date)];
+        all.into_iter().filter_map(|(name, value)| Some((name, value.as_deref()?)))
+    }
+}
+
+impl From<Version> for Edition {
+    fn from(version: Version) -> Self {
+        Self { version, ..Self::default() }
+    }
+}
+
 /// Which outputs a package tells of, by their names. Inputs and parameters it always tells of.
 pub type Wanted<'a> = &'a dyn Fn(&str) -> bool;
 
@@ -84,7 +112,7 @@ pub fn all(_: &str) -> bool {
 /// # Errors
 /// Only those of writing to memory.
 pub fn render(machine: &impl Parts, name: &str, wanted: Wanted<'_>) -> std::io::Result<ModelDescription> {
-    render_as(Version::V2, machine, name, wanted)
+    render_as(&Edition::default(), machine, name, wanted)
 }
 
 /// Renders the model description of a started machine for a package with a name, with some of its outputs. Value references and the identifier
@@ -93,23 +121,25 @@ pub fn render(machine: &impl Parts, name: &str, wanted: Wanted<'_>) -> std::io::
 /// # Errors
 /// Only those of writing to memory.
 pub fn render_as(
-    version: Version,
+    edition: &Edition,
     machine: &impl Parts,
     name: &str,
     wanted: Wanted<'_>,
 ) -> std::io::Result<ModelDescription> {
     let variables = MachineVariables::new(machine);
     let bearings = || machine.bearings().map(|(_, bearing)| bearing);
-    let (usual, title, source, load, dependencies) = match machine.shaft().map(System::scene) {
+    let (usual, title, source, load, (dependencies, arrays)) = match machine.shaft().map(System::scene) {
         Some(scene) => {
             let load = (scene.load.duration.0, scene.load.output_interval.0);
-            ("shaft on ball bearings", &scene.title, &scene.source, load, Dependencies::Point)
+            let structure = (Dependencies::Point, scene.interface.arrays);
+            ("shaft on ball bearings", &scene.title, &scene.source, load, structure)
         }
         None => {
             let alone =
                 bearings().next().ok_or_else(|| std::io::Error::other("there is no bearing"))?.scene();
             let load = (alone.load.duration.0, alone.load.output_interval.0);
-            ("ball bearing", &alone.title, &alone.source, load, alone.interface.dependencies)
+            let structure = (alone.interface.dependencies, alone.interface.arrays);
+            ("ball bearing", &alone.title, &alone.source, load, structure)
         }
     };
     let step: fn(&Simulation) -> f64 = match machine.shaft() {
@@ -121,13 +151,14 @@ pub fn render_as(
         title: if title.is_empty() { usual } else { title },
         name,
         guid: &guid,
+        edition,
         dependencies,
         derivatives: bearings().all(|bearing| bearing.scene().solver.method == Method::Hht),
         stop: load.0,
         step: bearings().map(step).fold(load.1, f64::min),
     };
-    let exported = Exported::new(variables.rows(), &variables.values(machine), wanted);
-    let xml = document(version, &about, &exported)?;
+    let exported = Exported::new(variables.rows(), &variables.values(machine), arrays, wanted);
+    let xml = document(&about, &exported)?;
     Ok(ModelDescription { xml, guid })
 }
 
@@ -142,13 +173,13 @@ struct Exported {
 }
 
 impl Exported {
-    fn new(all: &[Variable], starts: &[f64], wanted: Wanted<'_>) -> Self {
+    fn new(all: &[Variable], starts: &[f64], arrays: bool, wanted: Wanted<'_>) -> Self {
         let exported = || (0..all.len()).filter(|index| is_exported(&all[*index], wanted));
         Self {
             rows: exported().map(|index| all[index].clone()).collect(),
             references: exported().collect(),
             starts: exported().map(|index| starts[index]).collect(),
-            version3: References::new(all),
+            version3: References::of(all, arrays),
         }
     }
 
@@ -168,6 +199,7 @@ struct About<'a> {
     title: &'a str,
     name: &'a str,
     guid: &'a str,
+    edition: &'a Edition,
     /// Meaning of the dependencies of its outputs.
     dependencies: Dependencies,
     /// Are there derivatives by inputs?
@@ -195,10 +227,10 @@ pub fn guid(source: &str, rows: &[Variable]) -> String {
     format!("{{{}-{}-{}-{}-{}}}", &hex[0..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
 }
 
-fn document(version: Version, about: &About<'_>, exported: &Exported) -> std::io::Result<String> {
+fn document(about: &About<'_>, exported: &Exported) -> std::io::Result<String> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    match version {
+    match about.edition.version {
         Version::V2 => v2::write(&mut xml, about, exported)?,
         Version::V3 => v3::write(&mut xml, about, exported)?,
     }

@@ -20,6 +20,7 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
             ("variableNamingConvention", "structured"),
             ("numberOfEventIndicators", "0"),
         ])
+        .with_attributes(about.edition.attributes())
         .write_inner_content(|xml| {
             co_simulation(xml, about)?;
             let units = used_units(&exported.rows);

@@ -1,9 +1,12 @@
 //! A description as FMI 3.0 has it.
 
+use std::collections::BTreeMap;
+
 use super::elements::{default_experiment, log_categories, nature, numbers, unit_definitions};
 use super::structure::Output;
 use super::{About, Exported, Xml, identifier, used_units};
-use crate::interface::references::{RateRow, References, rate_row, updates_are_offered};
+use crate::interface::arrays::Array;
+use crate::interface::references::{RateRow, rate_row, updates_are_offered};
 use crate::interface::variables::{Causality, Kind, Variable};
 use crate::schema::variable_units::{self as units, Unit};
 
@@ -19,6 +22,12 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
         }
     });
     let updated = exported.takes_updates();
+    let mut scalars: BTreeMap<usize, Scalar> = BTreeMap::new();
+    scalars
+        .extend(exported.all().map(|(reference, row, start)| (reference, Scalar::of(row, start, updated))));
+    scalars.insert(references.time(), Scalar::time());
+    scalars.extend(rates.iter().map(|(reference, rate)| (*reference, Scalar::of_rate(rate, updated))));
+    let arrays = references.whole_arrays(|reference| scalars.contains_key(&reference));
     xml.create_element("fmiModelDescription")
         .with_attributes([
             ("fmiVersion", "3.0"),
@@ -30,6 +39,7 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
             ("generationTool", concat!("roulement ", env!("CARGO_PKG_VERSION"))),
             ("variableNamingConvention", "structured"),
         ])
+        .with_attributes(about.edition.attributes())
         .write_inner_content(|xml| {
             co_simulation(xml, about, updated)?;
             unit_definitions(xml, &units)?;
@@ -37,13 +47,16 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
             log_categories(xml)?;
             default_experiment(xml, about)?;
             xml.create_element("ModelVariables").write_inner_content(|xml| {
-                for (reference, row, start) in exported.all() {
-                    variable(xml, reference, row, start, updated)?;
-                }
-                time(xml, references)?;
-                rates.iter().try_for_each(|(reference, rate)| rate_of_input(xml, *reference, rate, updated))
+                scalars.iter().try_for_each(|(reference, scalar)| match arrays.get(reference) {
+                    None => scalar.write(xml, *reference, &[]),
+                    // Where its first element would be.
+                    Some((own, array)) if array.elements.first() == Some(&(*reference as u32)) => {
+                        scalar.array(array, &scalars).write(xml, *own, &array.dimensions)
+                    }
+                    Some(_) => Ok(()),
+                })
             })?;
-            model_structure(xml, exported, &exported.outputs(about.dependencies))
+            model_structure(xml, exported, &exported.outputs(about.dependencies), &arrays)
         })?;
     Ok(())
 }
@@ -82,71 +95,140 @@ fn type_definitions(xml: &mut Xml, used: &[Unit]) -> std::io::Result<()> {
     Ok(())
 }
 
-fn variable(
-    xml: &mut Xml,
-    reference: usize,
-    row: &Variable,
-    start: f64,
-    updated: bool,
-) -> std::io::Result<()> {
-    let reference = reference.to_string();
-    let numbers = numbers(row, start);
-    let kind = if row.kind == Kind::Real { "Float64" } else { "Int64" };
-    let element = xml.create_element(kind).with_attributes([
-        ("name", row.name.as_str()),
-        ("valueReference", reference.as_str()),
-        ("description", row.description.as_str()),
-    ]);
-    let within_steps = updated && matches!(row.causality, Causality::Input | Causality::Output);
-    let element = element.with_attributes(within_steps.then_some(("intermediateUpdate", "true")));
-    let numbers = numbers.iter().map(|(name, value)| (*name, value.as_str()));
-    element.with_attributes(nature(row)).with_attributes(numbers).write_empty()?;
-    Ok(())
+/// A variable as it is written: of the table, time, or the rate of an input.
+struct Scalar {
+    /// `Float64` or `Int64`.
+    kind: &'static str,
+    name: String,
+    description: String,
+    /// All others.
+    attributes: Vec<(&'static str, String)>,
 }
 
-fn time(xml: &mut Xml, references: &References) -> std::io::Result<()> {
-    let reference = references.time().to_string();
-    xml.create_element("Float64")
-        .with_attributes([
-            ("name", "time"),
-            ("valueReference", reference.as_str()),
-            ("description", "time"),
+impl Scalar {
+    fn of(row: &Variable, start: f64, updated: bool) -> Self {
+        let within_steps = updated && matches!(row.causality, Causality::Input | Causality::Output);
+        let mut attributes = vec![];
+        attributes.extend(within_steps.then(|| ("intermediateUpdate", "true".to_string())));
+        attributes.extend(nature(row).map(|(name, value)| (name, value.to_string())));
+        attributes.extend(numbers(row, start));
+        Self {
+            kind: if row.kind == Kind::Real { "Float64" } else { "Int64" },
+            name: row.name.clone(),
+            description: row.description.clone(),
+            attributes,
+        }
+    }
+
+    fn time() -> Self {
+        let attributes = [
             ("causality", "independent"),
             ("variability", "continuous"),
             ("declaredType", units::SECOND.quantity),
             ("unit", units::SECOND.name),
-        ])
-        .write_empty()?;
-    Ok(())
-}
+        ];
+        Self::real("time".into(), "time".into(), &attributes)
+    }
 
-/// An optional input: it starts at 0, and a master that knows no accelerations leaves it there.
-fn rate_of_input(xml: &mut Xml, reference: usize, rate: &RateRow, updated: bool) -> std::io::Result<()> {
-    let reference = reference.to_string();
-    xml.create_element("Float64")
-        .with_attributes([
-            ("name", rate.name.as_str()),
-            ("valueReference", reference.as_str()),
-            ("description", rate.description.as_str()),
+    /// An optional input: it starts at 0, and a master that knows no accelerations leaves it there.
+    fn of_rate(rate: &RateRow, updated: bool) -> Self {
+        let update = updated.then_some(("intermediateUpdate", "true"));
+        let attributes = [
             ("causality", "input"),
             ("declaredType", rate.unit.quantity),
             ("unit", rate.unit.name),
             ("start", "0.0"),
-        ])
-        .with_attributes(updated.then_some(("intermediateUpdate", "true")))
-        .write_empty()?;
-    Ok(())
-}
+        ];
+        let attributes: Vec<_> = update.into_iter().chain(attributes).collect();
+        Self::real(rate.name.clone(), rate.description.clone(), &attributes)
+    }
 
-fn model_structure(xml: &mut Xml, exported: &Exported, outputs: &[Output]) -> std::io::Result<()> {
-    xml.create_element("ModelStructure").write_inner_content(|xml| {
-        for Output { index, inputs, .. } in outputs {
-            let known: Vec<usize> = inputs.iter().flat_map(|input| exported.with_rate(*input)).collect();
-            unknown(xml, "Output", exported.references[*index], Some(&known))?;
+    fn real(name: String, description: String, attributes: &[(&'static str, &str)]) -> Self {
+        let attributes = attributes.iter().map(|(name, value)| (*name, (*value).to_string())).collect();
+        Self { kind: "Float64", name, description, attributes }
+    }
+
+    fn attribute(&self, name: &str) -> &str {
+        self.attributes.iter().find(|(own, _)| *own == name).map_or("", |(_, value)| value)
+    }
+
+    /// The array of this one and others, which differ in what they start at and in their typical size.
+    fn array(&self, array: &Array, all: &BTreeMap<usize, Self>) -> Self {
+        let elements = || array.elements.iter().filter_map(|reference| all.get(&(*reference as usize)));
+        let attributes = self.attributes.iter().map(|(name, value)| match *name {
+            "start" => (*name, elements().map(|one| one.attribute(name)).collect::<Vec<_>>().join(" ")),
+            "nominal" => {
+                let sizes = elements().filter_map(|one| one.attribute(name).parse::<f64>().ok());
+                (*name, sizes.fold(0.0, f64::max).to_string())
+            }
+            _ => (*name, value.clone()),
+        });
+        Self {
+            kind: self.kind,
+            name: array.name.clone(),
+            description: array.description.clone(),
+            attributes: attributes.collect(),
         }
-        for Output { index, counted_from_start, .. } in outputs {
-            let known = counted_from_start.then_some(&[][..]);
-            unknown(xml, "InitialUnknown", exported.references[*index], known)?;
+    }
+
+    fn write(&self, xml: &mut Xml, reference: usize, dimensions: &[usize]) -> std::io::Result<()> {
+        let reference = reference.to_string();
+        let attributes = self.attributes.iter().map(|(name, value)| (*name, value.as_str()));
+        let element = xml
+            .create_element(self.kind)
+            .with_attributes([
+                ("name", self.name.as_str()),
+                ("valueReference", reference.as_str()),
+                ("description", self.description.as_str()),
+            ])
+            .with_attributes(attributes);
+        if dimensions.is_empty() {
+            element.write_empty()?;
+            return Ok(());
+        }
+        element.write_inner_content(|xml| {
+            for length in dimensions {
+                let length = length.to_string();
+                xml.create_element("Dimension").with_attribute(("start", length.as_str())).write_empty()?;
+            }
+            Ok(())
+        })?;
+        Ok(())
+    }
+}
+/// Arrays, each by all its elements.
+type Whole<'a> = BTreeMap<usize, (usize, &'a Array)>;
+
+fn model_structure(
+    xml: &mut Xml,
+    exported: &Exported,
+    outputs: &[Output],
+    arrays: &Whole<'_>,
+) -> std::io::Result<()> {
+    let told = |reference: usize| arrays.get(&reference).map_or(reference, |(own, _)| *own);
+    // An array depends on what one of its elements depends on; the order is that of the variables.
+    let mut unknowns: Vec<(usize, Vec<usize>, bool)> = vec![];
+    let mut places: BTreeMap<usize, usize> = BTreeMap::new();
+    for Output { index, inputs, counted_from_start } in outputs {
+        let reference = told(exported.references[*index]);
+        let place = *places.entry(reference).or_insert(unknowns.len());
+        if place == unknowns.len() {
+            unknowns.push((reference, vec![], true));
+        }
+        let (_, known, counted) = &mut unknowns[place];
+        *counted &= counted_from_start;
+        for input in inputs.iter().flat_map(|input| exported.with_rate(*input)).map(told) {
+            if !known.contains(&input) {
+                known.push(input);
+            }
+        }
+    }
+    xml.create_element("ModelStructure").write_inner_content(|xml| {
+        for (reference, known, _) in &unknowns {
+            unknown(xml, "Output", *reference, Some(known))?;
+        }
+        for (reference, _, counted_from_start) in &unknowns {
+            unknown(xml, "InitialUnknown", *reference, counted_from_start.then_some(&[][..]))?;
         }
         Ok(())
     })?;

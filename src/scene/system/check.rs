@@ -108,8 +108,8 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
 /// Keys that the scene of a bearing alone has, and what a machine has in their place.
 const ELSEWHERE: [(&str, &[&str], &str); 5] = [
     (
-        "",
-        &["interface"],
+        "interface",
+        &["orientation", "dependencies", "inputs"],
         "is for a bearing without a shaft: inputs of a machine are played by its scripts until the importer sets one of them; who gives \
          friction, temperatures and oil of a bearing, and how its orientations are written, is [bearing.set] interface",
     ),

@@ -35,8 +35,8 @@ use crate::effects::frame::FrameSection;
 use crate::schema::units::{Acceleration, Force, Moment, Time};
 use crate::schema::{
     AxialSeat, Components, CouplingSection, DutySection, GearSection, GivenMotion, HousingLoad,
-    HousingSection, Matrices, MeshSection, Mounting, PhaseSection, PointLoad, RotatingSection, Schedule,
-    ShaftSection, Shafts, Solver, explain, regular,
+    HousingSection, Interface, Matrices, MeshSection, Mounting, PhaseSection, PointLoad, RotatingSection,
+    Schedule, ShaftSection, Shafts, Solver, explain, regular,
 };
 
 /// A shaft with its bearings, as described by a file.
@@ -56,6 +56,8 @@ pub struct SystemScene {
     pub bearings: Vec<MountedScene>,
     /// [m/s2] acceleration of gravity in the axes of the shaft.
     pub gravity: Components<Acceleration>,
+    /// Interface of its FMU.
+    pub interface: Interface,
     /// Ranges of its keys that a package can meet.
     pub ranges: Ranges,
     /// Motion of the machine's frame, which all places and velocities are seen from; none where it rests.
@@ -219,6 +221,9 @@ struct Written {
     /// Time integration, as in the scene of a bearing; instead of those of the bearings' own scenes.
     #[serde(default)]
     solver: Table,
+    /// Interface of the FMU: `arrays`, true or false, as in the scene of a bearing.
+    #[serde(default)]
+    interface: Interface,
     /// Keys of this file, each with the two ends of the range that a package can meet; `effects.auto` of a package is judged at all their corners.
     #[serde(default)]
     ranges: Ranges,
@@ -307,6 +312,7 @@ impl SystemScene {
             gravity,
             frame,
             solver,
+            interface,
             ranges,
         } = written;
         let matrices = |given: &Option<Value>, key: &str| {
@@ -374,6 +380,7 @@ impl SystemScene {
             load,
             phases,
             duty,
+            interface,
             ranges,
             source,
         })
