@@ -6,7 +6,9 @@ use super::updates::{Underway, Updates};
 use crate::fmi::directional::Known;
 use crate::fmi::guard::Held;
 use crate::fmi::instance::Instance;
+use crate::fmi::log::Log;
 use crate::fmi::outcome::{Outcome, error};
+use crate::fmi::state::Phase;
 use crate::interface::references::{Place, References, rate_row, updates_are_offered};
 use crate::interface::variables::{Causality, Kind};
 
@@ -23,8 +25,8 @@ pub struct Slave {
 }
 
 impl Held for Slave {
-    fn instance(&mut self) -> &mut Instance {
-        &mut self.instance
+    fn log_and_phase(&mut self) -> (&Log, &mut Phase) {
+        self.instance.log_and_phase()
     }
 }
 
