@@ -6,8 +6,6 @@
 //! ([`crate::dynamics::advance_perturbed`]). Before the first step they are those of the equilibrium that the simulation starts
 //! from.
 
-use std::collections::BTreeSet;
-
 use super::instance::Instance;
 use super::outcome::{Outcome, error};
 use super::state::Phase;
@@ -136,11 +134,15 @@ impl Instance {
     /// that takes a matrix input by input asks for the same ones again.
     fn find_columns(&mut self, knowns: &[usize]) -> Outcome {
         let kept = self.columns.take();
-        let mut wanted = if kept.is_none() { std::mem::take(&mut self.asked) } else { BTreeSet::new() };
-        wanted.extend(knowns);
-        self.asked.extend(knowns);
-        let mut columns = kept.unwrap_or_else(|| vec![vec![]; self.unit.rows().len()]);
-        let missing: Vec<usize> = wanted.into_iter().filter(|known| columns[*known].is_empty()).collect();
+        let count = self.unit.rows().len();
+        let mut wanted = if kept.is_none() { std::mem::take(&mut self.asked) } else { vec![] };
+        for list in [&mut wanted, &mut self.asked] {
+            list.resize(count, false);
+            knowns.iter().for_each(|known| list[*known] = true);
+        }
+        let mut columns = kept.unwrap_or_else(|| vec![vec![]; count]);
+        let missing: Vec<usize> =
+            (0..count).filter(|known| wanted[*known] && columns[*known].is_empty()).collect();
         if !missing.is_empty() {
             let found = self.unit.derivatives(self.state.before.as_ref(), &self.state.played, &missing)?;
             missing.into_iter().zip(found).for_each(|(input, column)| columns[input] = column);

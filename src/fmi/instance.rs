@@ -1,6 +1,5 @@
 //! An instance: its start, its phases, its variables.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::log::Log;
@@ -37,8 +36,8 @@ pub struct Instance {
     pub previous: Option<Vec<f64>>,
     /// Derivatives of outputs by inputs at this point: columns of inputs that were asked for.
     pub columns: Option<Vec<Vec<f64>>>,
-    /// Inputs by which derivatives were asked for at this point, or at the last one where some were.
-    pub asked: BTreeSet<usize>,
+    /// Of each variable: were derivatives by it asked for at this point, or at the last one where some were? Empty before the first.
+    pub asked: Vec<bool>,
     /// Derivatives of outputs by the rates of inputs at this point, if they were asked for.
     pub(super) rate_columns: Option<Vec<Vec<f64>>>,
     /// Warnings that were given.
@@ -115,7 +114,7 @@ impl Instance {
             present: None,
             previous: None,
             columns: None,
-            asked: BTreeSet::new(),
+            asked: vec![],
             rate_columns: None,
             warned: Warned::default(),
             alarms: Alarms::default(),

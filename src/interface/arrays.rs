@@ -1,8 +1,6 @@
 //! Arrays of packages of FMI 3.0: variables of the table whose names differ in a number (`ball[3].inner.load`) or in a component
 //! (`inner.force.x`), and in nothing else that a master is told. The rows stay what they are; an array lists the references of its elements.
 
-use std::collections::BTreeMap;
-
 use super::variables::Variable;
 
 /// An array.
@@ -122,12 +120,15 @@ fn array(name: String, elements: &[(&Element<'_>, Vec<&str>)]) -> Option<Array> 
     })
 }
 
-/// All arrays among elements, in the order of their names.
+/// All arrays among elements, in the order of the first of each.
 pub fn arrays(elements: &[Element<'_>]) -> Vec<Array> {
-    let mut by_name: BTreeMap<String, Vec<_>> = BTreeMap::new();
+    let mut by_name: Vec<(String, Vec<_>)> = vec![];
     for element in elements {
         let (stem, places) = split(element.name);
-        by_name.entry(stem).or_default().push((element, places));
+        match by_name.iter_mut().find(|(name, _)| *name == stem) {
+            Some((_, alike)) => alike.push((element, places)),
+            None => by_name.push((stem, vec![(element, places)])),
+        }
     }
     by_name.into_iter().filter_map(|(name, elements)| array(name, &elements)).collect()
 }

@@ -2,7 +2,6 @@
 //! some, come behind them.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 use super::arrays::{self, Array, Element};
 use super::variables::{Causality, InputKind, Source, Variable};
@@ -98,12 +97,20 @@ impl References {
         references.iter().flat_map(|reference| self.scalars(reference)).copied().collect()
     }
 
-    /// The arrays all of whose elements a package tells of, with their references, by the reference of each element.
-    pub fn whole_arrays(&self, told: impl Fn(usize) -> bool) -> BTreeMap<usize, (usize, &Array)> {
-        let whole = self.arrays().filter(|(_, array)| array.elements.iter().all(|one| told(*one as usize)));
+    /// How many references there are.
+    pub fn count(&self) -> usize {
+        self.rows + 1 + self.rates.len() + self.arrays.len()
+    }
+
+    /// Of each reference, the array that it is an element of with the reference of that; of arrays alone all of whose elements a package tells of.
+    pub fn whole_arrays(&self, told: impl Fn(usize) -> bool) -> Vec<Option<(usize, &Array)>> {
+        let mut whole = vec![None; self.count()];
+        for (own, array) in
+            self.arrays().filter(|(_, array)| array.elements.iter().all(|one| told(*one as usize)))
+        {
+            array.elements.iter().for_each(|one| whole[*one as usize] = Some((own, array)));
+        }
         whole
-            .flat_map(|(own, array)| array.elements.iter().map(move |one| (*one as usize, (own, array))))
-            .collect()
     }
 
     /// That of the independent variable.

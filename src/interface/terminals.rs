@@ -72,7 +72,7 @@ pub fn terminals(rows: &[Variable], arrays: bool, wanted: Wanted<'_>) -> Vec<Ter
     let whole = references.whole_arrays(|one| rows.get(one).is_none_or(|row| is_exported(row, wanted)));
     let mut all: Vec<Terminal> = vec![];
     let mut add = |reference: usize, name: &str, of_race: bool| {
-        let array = whole.get(&reference).map(|(_, array)| *array);
+        let array = whole[reference].map(|(_, array)| array);
         // An array stands where its first element would.
         if array.is_some_and(|array| array.elements.first() != Some(&(reference as u32))) {
             return;

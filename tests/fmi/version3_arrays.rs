@@ -41,8 +41,8 @@ impl Told {
         let references = References::of(&package.rows, true);
         let scalars = package.rows.len() + 1 + references.rates().count();
         let whole = references.whole_arrays(|_| true);
-        let first = |one: &usize| whole.get(one).is_none_or(|(_, array)| array.elements[0] as usize == *one);
-        let all = (0..scalars).filter(first).map(|one| whole.get(&one).map_or(one, |(own, _)| *own) as u32);
+        let first = |one: &usize| whole[*one].is_none_or(|(_, array)| array.elements[0] as usize == *one);
+        let all = (0..scalars).filter(first).map(|one| whole[one].map_or(one, |(own, _)| own) as u32);
         Self { all: all.collect(), references }
     }
 

@@ -1,7 +1,5 @@
 //! A description as FMI 3.0 has it.
 
-use std::collections::BTreeMap;
-
 use super::elements::{default_experiment, log_categories, nature, numbers, unit_definitions};
 use super::structure::Output;
 use super::{About, Exported, Xml, identifier, used_units};
@@ -22,12 +20,16 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
         }
     });
     let updated = exported.takes_updates();
-    let mut scalars: BTreeMap<usize, Scalar> = BTreeMap::new();
-    scalars
-        .extend(exported.all().map(|(reference, row, start)| (reference, Scalar::of(row, start, updated))));
-    scalars.insert(references.time(), Scalar::time());
-    scalars.extend(rates.iter().map(|(reference, rate)| (*reference, Scalar::of_rate(rate, updated))));
-    let arrays = references.whole_arrays(|reference| scalars.contains_key(&reference));
+    // By their references, of those that are told of.
+    let mut scalars: Vec<Option<Scalar>> = (0..references.count()).map(|_| None).collect();
+    for (reference, row, start) in exported.all() {
+        scalars[reference] = Some(Scalar::of(row, start, updated));
+    }
+    scalars[references.time()] = Some(Scalar::time());
+    for (reference, rate) in &rates {
+        scalars[*reference] = Some(Scalar::of_rate(rate, updated));
+    }
+    let arrays = references.whole_arrays(|reference| scalars[reference].is_some());
     xml.create_element("fmiModelDescription")
         .with_attributes([
             ("fmiVersion", "3.0"),
@@ -47,14 +49,18 @@ pub fn write(xml: &mut Xml, about: &About<'_>, exported: &Exported) -> std::io::
             log_categories(xml)?;
             default_experiment(xml, about)?;
             xml.create_element("ModelVariables").write_inner_content(|xml| {
-                scalars.iter().try_for_each(|(reference, scalar)| match arrays.get(reference) {
-                    None => scalar.write(xml, *reference, &[]),
-                    // Where its first element would be.
-                    Some((own, array)) if array.elements.first() == Some(&(*reference as u32)) => {
-                        scalar.array(array, &scalars).write(xml, *own, &array.dimensions)
+                for (reference, scalar) in scalars.iter().enumerate() {
+                    let Some(scalar) = scalar else { continue };
+                    match arrays[reference] {
+                        None => scalar.write(xml, reference, &[])?,
+                        // Where its first element would be.
+                        Some((own, array)) if array.elements.first() == Some(&(reference as u32)) => {
+                            scalar.array(array, &scalars).write(xml, own, &array.dimensions)?;
+                        }
+                        Some(_) => {}
                     }
-                    Some(_) => Ok(()),
-                })
+                }
+                Ok(())
             })?;
             model_structure(xml, exported, &exported.outputs(about.dependencies), &arrays)
         })?;
@@ -153,8 +159,8 @@ impl Scalar {
     }
 
     /// The array of this one and others, which differ in what they start at and in their typical size.
-    fn array(&self, array: &Array, all: &BTreeMap<usize, Self>) -> Self {
-        let elements = || array.elements.iter().filter_map(|reference| all.get(&(*reference as usize)));
+    fn array(&self, array: &Array, all: &[Option<Self>]) -> Self {
+        let elements = || array.elements.iter().filter_map(|reference| all[*reference as usize].as_ref());
         let attributes = self.attributes.iter().map(|(name, value)| match *name {
             "start" => (*name, elements().map(|one| one.attribute(name)).collect::<Vec<_>>().join(" ")),
             "nominal" => {
@@ -196,22 +202,21 @@ impl Scalar {
         Ok(())
     }
 }
-/// Arrays, each by all its elements.
-type Whole<'a> = BTreeMap<usize, (usize, &'a Array)>;
 
+/// The structure; `arrays` as [`crate::interface::references::References::whole_arrays`] has them.
 fn model_structure(
     xml: &mut Xml,
     exported: &Exported,
     outputs: &[Output],
-    arrays: &Whole<'_>,
+    arrays: &[Option<(usize, &Array)>],
 ) -> std::io::Result<()> {
-    let told = |reference: usize| arrays.get(&reference).map_or(reference, |(own, _)| *own);
+    let told = |reference: usize| arrays[reference].map_or(reference, |(own, _)| own);
     // An array depends on what one of its elements depends on; the order is that of the variables.
     let mut unknowns: Vec<(usize, Vec<usize>, bool)> = vec![];
-    let mut places: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut places: Vec<Option<usize>> = vec![None; arrays.len()];
     for Output { index, inputs, counted_from_start } in outputs {
         let reference = told(exported.references[*index]);
-        let place = *places.entry(reference).or_insert(unknowns.len());
+        let place = *places[reference].get_or_insert(unknowns.len());
         if place == unknowns.len() {
             unknowns.push((reference, vec![], true));
         }
