@@ -163,10 +163,14 @@ fn growths(area: &Area<'_>, modes: &Modes, marks: &[Mark]) -> Drawn {
     growth_chart(&rest, &[(BLACK, fastest_growing(modes, marks))])
 }
 
-/// Motion that grows fastest at each speed, or decays slowest.
+/// [1/s] growth of a motion of balls below which it is not said to grow.
+const SLIGHT: f64 = 30.0;
+
+/// Motion that grows fastest at each speed, or decays slowest. What grows beyond [`SLIGHT`] and is not said to grow is of contacts that stick: none.
 fn fastest_growing(modes: &Modes, marks: &[Mark]) -> Vec<Mark> {
     let of_speed = |row: &Row| {
         let own = marks.iter().filter(|mark| mark.speed == rpm(row.speed));
+        let own = own.filter(|mark| mark.grows || mark.growth < SLIGHT);
         own.max_by(|a, b| a.growth.total_cmp(&b.growth)).copied()
     };
     modes.rows.iter().filter_map(of_speed).collect()

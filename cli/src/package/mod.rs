@@ -185,12 +185,26 @@ fn read_libraries(libraries: &[PathBuf]) -> Result<Vec<(Platform, Vec<u8>)>, Pac
     Ok(libraries)
 }
 
+/// May a file be put in the place of what is there? Not of a device or a folder: as root `-o /dev/null` would take that away from the machine.
+///
+/// # Errors
+/// Says that it is no file.
+pub fn replaceable(path: &Path) -> std::io::Result<()> {
+    match fs::metadata(path) {
+        Ok(there) if !there.is_file() => {
+            Err(std::io::Error::other("it is there and is no file: nothing is put in its place"))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn write(
     content: &Content<'_>,
     name: &str,
     libraries: &[(Platform, Vec<u8>)],
     output: &Path,
 ) -> Result<(), PackageError> {
+    replaceable(output).map_err(file_error("cannot write", output))?;
     let identifier = identifier(name);
     let version = content.version;
     // Without time stamps: the same scene and library give the same bytes.

@@ -16,6 +16,7 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::interface::Kind;
 use super::{System, SystemError, file_error};
+use crate::package::replaceable;
 
 /// Name of all sets of start values.
 const PARAMETER_SET: &str = "start";
@@ -32,6 +33,7 @@ type Xml = Writer<Vec<u8>>;
 /// # Errors
 /// If a package cannot be read, or the file not be written.
 pub fn write(system: &System, packages: &Path, file: &Path) -> Result<(), SystemError> {
+    replaceable(file).map_err(file_error("write", file))?;
     // Without time stamps: the same system gives the same bytes.
     let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
     let stored = options.compression_method(CompressionMethod::Stored);

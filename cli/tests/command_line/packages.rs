@@ -31,6 +31,19 @@ fn library(scratch: &Scratch, name: &str) -> Vec<u8> {
     system::unzipped(&scratch.path(name), "binaries/linux64/thrust.so")
 }
 
+/// As root a package put in the place of `/dev/null` would take that away from the machine.
+#[test]
+#[cfg(unix)]
+fn regression_what_is_no_file_is_left_alone() {
+    let scratch = Scratch::new("socket");
+    let socket = scratch.path("socket");
+    let _there = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    let output = roulement(&["fmu", &scene("thrust"), "-o", &socket]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && said.contains("is no file") && said.contains("socket"), "{said}");
+    assert!(!fs::metadata(&socket).unwrap().is_file(), "it is what it was");
+}
+
 #[test]
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 fn the_packed_library_has_no_symbols_and_no_folders_of_the_machine() {
