@@ -6,7 +6,7 @@ shafts have a third of critical damping at 10 kHz, so that motions of the start 
 
 Usage: scripts/gearbox_figures.py    renews docs/figures/gearbox-{spectrum,meshes,third}.png, gearbox-lines.svg and gearbox-loads.svg, and the numbers
                                      of the run in docs/gearbox.md; some minutes of CPU. Needs matplotlib, Node and Chromium as scripts/report-page does.
-ROULEMENT_BIN is the program; CHROMIUM the browser.
+ROULEMENT_BIN is the program.
 """
 
 import csv
@@ -26,15 +26,17 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 
 HERE = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(HERE / "examples" / "gearbox"))
+import gearbox  # noqa: E402
+
 FIGURES = HERE / "docs" / "figures"
 PROGRAM = Path(os.environ.get("ROULEMENT_BIN", HERE / "target" / "release" / "roulement"))
 SCENE = HERE / "examples" / "gearbox" / "three_stage.toml"
 VARIATION = '[{ amplitude = "15 %" }, { order = 2, amplitude = "5 %" }]'
 #: The run: its end, and the distance of its rows.
 DURATION, ROWS = "0.2 s", "50 us"
-#: [Hz] meshes of its stages, by teeth and speed.
-MESHES = {"stage1": 1400 / 60 * 23, "stage2": 1400 / 60 * 23 / 67 * 13, "stage3": 1400 / 60 * 23 / 67 * 13 / 76 * 14}
-#: Periods of the first mesh that are drawn.
+#: [Hz] first mesh, by speed and teeth, and how many of its periods are drawn.
+STAGE1 = 1400 / 60 * 23
 PERIODS = 4
 
 
@@ -55,20 +57,13 @@ def run(*arguments: str | Path) -> float:
     return after.ru_utime - before.ru_utime
 
 
-def chromium() -> str:
-    """The browser."""
-    names = ["chromium", "chromium-browser", "google-chrome"]
-    found = os.environ.get("CHROMIUM") or next((path for name in names if (path := shutil.which(name))), None)
-    return found or sys.exit("error: no Chromium is here: install it, or name it by CHROMIUM")
-
-
 def loads_over_meshes(folder: Path) -> None:
     """Normal force of the first mesh, and what the bearings of both its shafts carry across, over some of its periods at the end of the run."""
     with open(folder / "shaft.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     names = {name.split(" [")[0]: name for name in rows[0]}
     end = float(rows[-1][names["time"]])
-    begin = end - PERIODS / MESHES["stage1"]
+    begin = end - PERIODS / STAGE1
     late = [row for row in rows if float(row[names["time"]]) >= begin]
     time = [1e3 * (float(row[names["time"]]) - begin) for row in late]
     plt.rcParams.update({"font.size": 9, "svg.hashsalt": "gearbox", "svg.fonttype": "none"})
@@ -93,7 +88,6 @@ def loads_over_meshes(folder: Path) -> None:
 def main() -> None:
     if len(sys.argv) > 1:
         sys.exit(f"error: {sys.argv[1]} is no option of this script: it has none")
-    browser = chromium()
     with tempfile.TemporaryDirectory() as scratch:
         scratch = Path(scratch)
         scene = scratch / "gearbox.toml"
@@ -105,18 +99,13 @@ def main() -> None:
         run("report", scratch / "run", "-o", scratch / "gearbox.html")
         parts = {"#spectra@third.speed": "spectrum", "figure:has(.meshes)": "meshes", "figure[data-shaft=third]": "third"}
         pictures = [f"{selector}={FIGURES}/gearbox-{name}.png" for selector, name in parts.items()]
-        environment = {**os.environ, "CHROMIUM": browser}
-        subprocess.run([HERE / "report" / "test", scratch, "--parts", "gearbox.html", *pictures], check=True, env=environment)
+        subprocess.run([HERE / "scripts" / "report-page", "--parts", scratch / "gearbox.html", *pictures], check=True)
         run("modes", SCENE, "-o", scratch / "modes")
         shutil.copy(scratch / "modes" / "campbell.svg", FIGURES / "gearbox-lines.svg")
         loads_over_meshes(scratch / "run")
         steps = record["cost"]["steps"]
         text = f"Such a run takes {steps:,} steps of {1e6 * float(DURATION.split()[0]) / steps:.1f} us and {spent:.0f} s of CPU time, tables and warnings included."
-        page = HERE / "docs" / "gearbox.md"
-        whole = page.read_text(encoding="utf-8")
-        begin, rest = whole.split("<!-- begin teeth that vary -->\n", 1)
-        end = rest.split("<!-- end -->", 1)[1]
-        page.write_text(f"{begin}<!-- begin teeth that vary -->\n\n{text}\n\n<!-- end -->{end}", encoding="utf-8")
+        gearbox.put(HERE / "docs" / "gearbox.md", "teeth that vary", text)
 
 
 if __name__ == "__main__":

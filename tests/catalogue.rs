@@ -363,7 +363,7 @@ fn bearings_of_an_own_shelf_come_before_the_table() {
     // Refused with file, bearing, key, value and range.
     for (from, to, parts) in [
         ("balls = 14", "balls = 40", &["catalogue.toml", "HB 7205 X", "balls = 40", "[3, 16]"][..]),
-        ("\"7.144 mm\"", "\"71 mm\"", &["ball_diameter = 0.071", "allowed is [0.002"]),
+        ("\"7.144 mm\"", "\"71 mm\"", &["ball_diameter = 0.071", "allowed is [0.0027, 0.012825] m"]),
         ("0.525", "0.4", &["inner_conformity = 0.4", "[0.501, 1]"]),
         ("balls = 14\n", "", &["balls is missing"]),
         ("pitch_diameter = \"38.7 mm\"", "pitch = 1", &["pitch", "line"]),

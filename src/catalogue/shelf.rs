@@ -182,7 +182,9 @@ impl Own {
             range.check(key, value).map_err(|why| CatalogueError::Conflict(why.to_string()))
         };
         let room = if bearing.is_thrust() { bearing.width } else { bearing.section_height() };
-        within("ball_diameter", ball_diameter, Range::closed(0.2 * room, 0.95 * room, "m"))?;
+        // To the nanometre, so that an error has no digits of rounding.
+        let part = |share: f64| (share * room * 1e9).round() / 1e9;
+        within("ball_diameter", ball_diameter, Range::closed(part(0.2), part(0.95), "m"))?;
         let pitch_diameter = self.pitch_diameter.map_or(bearing.pitch_diameter(), |pitch| pitch.0);
         within("pitch_diameter", pitch_diameter, Range::closed(bearing.bore, bearing.outside, "m"))?;
         let most = std::f64::consts::PI / (ball_diameter / pitch_diameter).asin();

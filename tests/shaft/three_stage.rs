@@ -68,3 +68,18 @@ fn invariant_the_public_three_stage_gearbox_keeps_its_energy_its_ratio_and_its_b
     let bits = |system: &System| serde_json::to_vec(&system.snapshot()).unwrap();
     assert!(bits(&system) == bits(&again));
 }
+
+/// One ball of a bearing at 13 rpm, whose friction turns round as its shaft swings, kept those of all bearings waiting: 6226 corrections in these 0.5 ms, and
+/// 2930 where it is solved alone.
+#[test]
+fn regression_a_ball_that_hardly_comes_is_solved_alone() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gearbox");
+    let text = std::fs::read_to_string(folder.join("three_stage.toml")).unwrap();
+    let variation = r#"stiffness_variation = [{ amplitude = "15 %" }, { order = 2, amplitude = "5 %" }]"#;
+    let text = text.replace("[[mesh]]", &format!("[[mesh]]\n{variation}"));
+    let text = text.replace("[load]", "[solver]\naccuracy = \"fast\"\n\n[load]");
+    let mut system = System::new(&SystemScene::parse(&text, None, &folder).unwrap()).unwrap();
+    system.advance(5e-4).unwrap();
+    let worked = system.bearings().next().unwrap().1.state().statistics.newton.iterations;
+    assert!(worked > 1000 && worked < 4500, "{worked}");
+}

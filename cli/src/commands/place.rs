@@ -78,17 +78,22 @@ impl Place {
         }
     }
 
+    /// Looks whether the chosen columns are there.
+    ///
+    /// # Errors
+    /// If one is not.
+    pub fn check_columns(&self, scene: &MachineScene, machine: &Machine) -> Result<(), ResultsError> {
+        match self.has_files() {
+            true => PartColumns::new(scene, &self.choice).map(drop),
+            false => MachineColumns::new(machine, &self.choice).map(drop),
+        }
+    }
+
     /// Takes the place for a run: nothing of a former one stays that could be taken for a part of it.
     ///
     /// # Errors
-    /// If a chosen column is not there, or files cannot be written or removed.
-    pub fn begin(&self, scene: &MachineScene, machine: &Machine) -> Result<(), Box<dyn Error>> {
-        // Before anything of a former run goes.
-        if self.has_files() {
-            PartColumns::new(scene, &self.choice)?;
-        } else {
-            MachineColumns::new(machine, &self.choice)?;
-        }
+    /// If files cannot be written or removed.
+    pub fn begin(&self, scene: &MachineScene) -> Result<(), Box<dyn Error>> {
         let begin = |directory: &Path| {
             record::begin(directory).map_err(|why| format!("cannot begin in {}: {why}", directory.display()))
         };

@@ -104,6 +104,8 @@ pub fn simulate(
     end_steps: bool,
 ) -> Result<ExitCode, Box<dyn Error>> {
     let machine = Machine::new(scene)?;
+    // Before what takes seconds, and before anything of a former run goes.
+    place.check_columns(scene, &machine)?;
     if machine.shaft().is_some() && place.said != Said::Nothing {
         // It may take seconds.
         tell(["effects: the whole shaft in balance with and without each".to_string()]);
@@ -117,7 +119,7 @@ pub fn simulate(
     let duty = DutyRating::of_scene(scene, threads())?;
     let judged = Judged { verdicts, duty, growing: warnings(scene, 0.0) };
     tell(judged.growing.iter().map(|warning| format!("warning: {warning}")));
-    place.begin(scene, &machine)?;
+    place.begin(scene)?;
     let tables = place.tables(scene, &machine, false)?;
     if wants_error || scene.solver().goal.is_some() {
         return measured(player, scene, (machine, tables), place, &judged, rounds);

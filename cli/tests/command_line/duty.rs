@@ -4,22 +4,8 @@ use serde_json::Value;
 
 use super::*;
 
-/// A 6206 with a duty of three loads; the last one changes oil and temperature as well.
-const SCENE: &str = r#"
-[bearing]
-balls = 9
-ball_diameter = "9.525 mm"
-pitch_diameter = "46 mm"
-diametral_clearance = "10 um"
-[rating]
-dynamic_load_rating = "20 kN"
-viscosity = "15 mm^2/s"
-contamination = 0.6
-[load]
-inner_speed = "1000 rpm"
-y = { force = 1000 }
-duration = "1 ms"
-output_interval = "0.1 ms"
+/// Three loads of the 6206 of [`rating`]; the last one changes oil and temperature as well.
+const LOADS: &str = r#"
 [[duty]]
 name = "climb"
 hours = 300
@@ -34,6 +20,11 @@ hours = 700
 set = { load = { inner_speed = "3000 rpm", y = { force = "2 kN" } }, rating = { viscosity = "8 mm^2/s" } }
 "#;
 
+/// It with them.
+fn scene_of_three() -> String {
+    format!("{}{LOADS}", rating::SCENE)
+}
+
 fn json(arguments: &[&str]) -> Value {
     let output = roulement(arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -47,7 +38,7 @@ fn near(ours: f64, theirs: f64, tolerance: f64) {
 #[test]
 fn closed_form_equilibria_runs_and_sweeps_have_the_hand_sum_of_a_duty() {
     let scratch = Scratch::new("duty");
-    std::fs::write(scratch.path("scene.toml"), SCENE).unwrap();
+    std::fs::write(scratch.path("scene.toml"), scene_of_three()).unwrap();
     let found = json(&["equilibrium", &scratch.path("scene.toml"), "--json"]);
     let duty = &found["duty"];
     // By hand: hours over the life of an equilibrium under each load alone, that of its oil.
@@ -59,10 +50,7 @@ fn closed_form_equilibria_runs_and_sweeps_have_the_hand_sum_of_a_duty() {
     let mut damage = [0.0; 2];
     let mut cubes = 0.0;
     for (place, (speed, force, viscosity, hours)) in alone.iter().enumerate() {
-        let text = SCENE
-            .split("[[duty]]")
-            .next()
-            .unwrap()
+        let text = rating::SCENE
             .replace("\"1000 rpm\"", &format!("\"{speed}\""))
             .replace("force = 1000", &format!("force = \"{force}\""))
             .replace("\"15 mm^2/s\"", &format!("\"{viscosity} mm^2/s\""));
@@ -143,8 +131,11 @@ fn closed_form_equilibria_runs_and_sweeps_have_the_hand_sum_of_a_duty() {
 #[test]
 fn loads_of_a_duty_that_cannot_be_read_are_named_before_anything_is_run() {
     let scratch = Scratch::new("duty-refused");
-    std::fs::write(scratch.path("scene.toml"), SCENE.replace("rating = { viscosity", "rating = { viscocity"))
-        .unwrap();
+    std::fs::write(
+        scratch.path("scene.toml"),
+        scene_of_three().replace("rating = { viscosity", "rating = { viscocity"),
+    )
+    .unwrap();
     for command in [&["equilibrium"][..], &["run", "-o", &scratch.path("results")]] {
         let scene = scratch.path("scene.toml");
         let output = roulement(&[&[command[0], scene.as_str()], &command[1..]].concat());

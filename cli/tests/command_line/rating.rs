@@ -3,7 +3,7 @@
 use super::*;
 
 /// A 6206 with the ratings of its scene; outer race control has no part in slow bearings.
-const SCENE: &str = r#"
+pub const SCENE: &str = r#"
 [bearing]
 balls = 9
 ball_diameter = "9.525 mm"

@@ -170,6 +170,7 @@ fn columns_of_a_machine_are_chosen_by_their_names_with_those_of_the_bearings() {
         run(&scratch, &pinion(), "none", &["--columns", "left.inner.force.x,middle.inner.force.x"]);
     assert_eq!(code, Some(1), "{told}");
     assert!(told.contains("--columns middle.inner.force.x") && told.contains("no such column"), "{told}");
+    assert!(!told.contains("effects"), "nothing that takes time comes before: {told}");
 
     // A sweep has the same names, of the shaft too.
     let (base, cases, to) = (scratch.path("one.toml"), scratch.path("cases.csv"), scratch.path("sweep"));
