@@ -109,7 +109,7 @@ fn bearing(name: &str, text: &str, edits: &[(&str, &str)], after: f64, rows: usi
 
 /// A shaft that is kicked at a place after a time \[s], across the axis.
 fn shaft(name: &str, text: &str, place: &str, after: f64, rows: usize) -> Case {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(roulement_tests::ROOT).join("scenes");
     let with = |force: f64| {
         let [middle, end] = [after + 0.5 * KICK, after + KICK];
         let load = format!(
@@ -295,7 +295,7 @@ fn invariant_growth_of_loaded_shafts_is_that_of_kicked_runs() {
 /// end. The second bearing holds the ring, which whirls on one of them.
 #[test]
 fn regression_two_bearings_with_even_numbers_of_balls() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/whirl");
+    let folder = Path::new(roulement_tests::ROOT).join("scenes/whirl");
     let text = include_str!("../../scenes/whirl/two.toml");
     for speed in ["10000 rpm", "41250 rpm", "60000 rpm"] {
         let text = text.replace("40000 rpm", speed);
@@ -332,7 +332,7 @@ fn closed_form_a_ring_on_resting_balls_without_friction_swings_by_stiffness_over
 #[test]
 fn independent_code_frequencies_of_a_rotor_are_those_of_ross() {
     let ross: Value = serde_json::from_str(include_str!("../data/shaft/ross.json")).unwrap();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(roulement_tests::ROOT).join("scenes");
     let mut worst = 0.0f64;
     for row in ross["rows"].as_array().unwrap() {
         let rpm = row["rpm"].as_f64().unwrap();

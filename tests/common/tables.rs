@@ -64,7 +64,7 @@ impl Row {
 
 /// Compares the section `<!-- begin NAME -->` of a document with a table, or writes it where that is asked for.
 pub fn compare(document: &str, name: &str, header: &str, rows: &[Row]) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(document);
+    let path = Path::new(roulement_tests::ROOT).join(document);
     let text = std::fs::read_to_string(&path).unwrap();
     let begin = format!("<!-- begin {name} -->\n");
     let (before, rest) = text.split_once(&begin).unwrap_or_else(|| panic!("{document} has no {begin}"));

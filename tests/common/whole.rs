@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// Compares a file with what it should be, or writes it.
 pub fn compare(file: &str, text: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let path = Path::new(roulement_tests::ROOT).join(file);
     if std::env::var("ROULEMENT_RENEW").is_ok() {
         fs::write(path, text).unwrap();
         return;

@@ -31,7 +31,9 @@ fn theory(friction: f64) -> LinearTheory<f64> {
 
 /// A row of the data: creepages (curvature included) and fx, fy, mz, power.
 fn rows() -> Vec<(String, [f64; 4], [f64; 4], f64)> {
-    let mut table = csv::Reader::from_path("tests/data/contact/heathcote.csv").unwrap();
+    let mut table =
+        csv::Reader::from_path(format!("{}/tests/data/contact/heathcote.csv", roulement_tests::ROOT))
+            .unwrap();
     table
         .records()
         .map(|record| {

@@ -8,7 +8,9 @@ use roulement::kalker::linear::Scales;
 /// Largest and root mean square difference of phi_yz, phi_z, phi_zy from boundary elements.
 fn differences(parameters: &Parameters, ratio: f64, scales: &Scales) -> [[f64; 2]; 3] {
     let mut sums = [[0.0f64, 0.0, 0.0]; 3];
-    let mut table = csv::Reader::from_path("tests/data/contact/identification.csv").unwrap();
+    let mut table =
+        csv::Reader::from_path(format!("{}/tests/data/contact/identification.csv", roulement_tests::ROOT))
+            .unwrap();
     for record in table.records() {
         let record = record.unwrap();
         let number = |k: usize| record[k].parse::<f64>().unwrap();

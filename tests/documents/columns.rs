@@ -25,7 +25,7 @@ struct Line {
 
 /// Scenes by the paths they are known by; runs of them are what the columns are of.
 fn scenes() -> Vec<(String, Scene)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(roulement_tests::ROOT);
     let mut paths: Vec<String> = ["scenes", "scenes/effects"]
         .iter()
         .flat_map(|folder| {

@@ -24,7 +24,7 @@ fn entry(name: &Path, file: &Path) -> Row {
     let paragraph: Vec<&str> = text.lines().map_while(|line| line.strip_prefix("//! ")).collect();
     let purpose = paragraph.join(" ");
     assert!(!purpose.is_empty() && !purpose.contains('|'), "{}: {purpose:?}", file.display());
-    let name = name.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap();
+    let name = name.strip_prefix(roulement_tests::ROOT).unwrap();
     row(format!("`{}` | {}", name.display(), purpose.trim_end_matches('.')), vec![], "")
 }
 
@@ -59,7 +59,7 @@ fn room(folder: &Path) -> Vec<Row> {
 fn contributing_lists_all_files_of_tests() {
     let mut rows = vec![];
     for tests in ["tests", "cli/tests"] {
-        for path in inside(&Path::new(env!("CARGO_MANIFEST_DIR")).join(tests)) {
+        for path in inside(&Path::new(roulement_tests::ROOT).join(tests)) {
             if path.join("main.rs").exists() {
                 rows.extend(room(&path));
             } else if path.is_file() {

@@ -104,7 +104,7 @@ fn regression_corrections_by_number_of_balls() {
 
 /// Mean iterations of the polynomials over the contacts of `random.csv`, from nothing and from creepages 1 % smaller.
 fn iterations(degree: usize) -> [f64; 2] {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/contact/random.csv");
+    let file = format!("{}/tests/data/contact/random.csv", roulement_tests::ROOT);
     let (mut sums, mut cases) = ([0.0; 2], 0.0);
     for contact in csv::Reader::from_path(file).unwrap().deserialize() {
         let contact: RollingContact = contact.unwrap();
@@ -129,7 +129,7 @@ fn exact_errors(kind: &str) -> Row {
         fy: f64,
         mz: f64,
     }
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/contact/random.csv");
+    let file = format!("{}/tests/data/contact/random.csv", roulement_tests::ROOT);
     let mut table = csv::Reader::from_path(file).unwrap();
     let headers = table.headers().unwrap().clone();
     let (mut mean, mut worst, mut cases) = ([0.0; 3], [0.0f64; 3], 0.0);

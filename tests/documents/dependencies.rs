@@ -21,7 +21,7 @@ fn linked(package: &str) -> Vec<String> {
             "--package",
             package,
         ])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .current_dir(roulement_tests::ROOT)
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -10,7 +10,7 @@ use roulement::simulation::play::{Rows, play};
 
 /// Scenes by their paths, in order.
 fn scenes() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/effects");
+    let folder = Path::new(roulement_tests::ROOT).join("scenes/effects");
     let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path());
     let mut paths: Vec<_> =
         files.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).collect();

@@ -82,7 +82,9 @@ fn changes(verdicts: &[Verdict], subject: &str) -> Changes {
 
 #[test]
 fn independent_data_lines_of_six_bearings() {
-    let mut table = csv::Reader::from_path("tests/data/effects/auto_estimates.csv").unwrap();
+    let mut table =
+        csv::Reader::from_path(format!("{}/tests/data/effects/auto_estimates.csv", roulement_tests::ROOT))
+            .unwrap();
     let mut largest = (0.0, String::new());
     let mut rows = 0;
     for row in table.deserialize() {

@@ -348,7 +348,7 @@ fn a_measured_profile_is_its_waves_and_its_file_goes_into_the_scene() {
 #[test]
 fn closed_form_a_turned_race_has_its_waves_and_spalls_turned() {
     let [waves, spall] = ["waviness", "spall"].map(|name| {
-        std::fs::read_to_string(format!("{}/scenes/effects/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+        std::fs::read_to_string(format!("{}/scenes/effects/{name}.toml", roulement_tests::ROOT)).unwrap()
     });
     let forces = |text: &str, changes: &[(&str, &str)]| {
         let scene = Scene::edited(text, changes.iter().copied()).unwrap();

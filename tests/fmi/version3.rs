@@ -17,7 +17,7 @@ use crate::system;
 const STEP: f64 = 1.0 / 16384.0;
 
 fn caged() -> String {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cage.toml")).unwrap();
+    let text = std::fs::read_to_string(format!("{}/scenes/cage.toml", roulement_tests::ROOT)).unwrap();
     scene(&text, &[("effects.per_ball_outputs", "true")]).source
 }
 

@@ -239,7 +239,7 @@ fn scenes() -> Vec<PathBuf> {
         }
     }
     let mut all = vec![];
-    within(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes").as_ref(), &mut all);
+    within(format!("{}/scenes", roulement_tests::ROOT).as_ref(), &mut all);
     all.sort();
     all
 }
@@ -284,8 +284,7 @@ fn invariant_every_scalar_of_every_scene_is_in_one_variable() {
         }
     }
     assert!(with_balls > 1);
-    let stiffness =
-        Scene::load(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/effects/stiffness.toml").as_ref());
+    let stiffness = Scene::load(format!("{}/scenes/effects/stiffness.toml", roulement_tests::ROOT).as_ref());
     let found = check_arrays(Variables::new(&stiffness.unwrap()).rows());
     for block in ["linear.linear", "linear.angular", "angular.linear", "angular.angular"] {
         assert_eq!(found.get(&format!("stiffness.{block}")), Some(&vec![3, 3]));
@@ -294,7 +293,7 @@ fn invariant_every_scalar_of_every_scene_is_in_one_variable() {
 
 #[test]
 fn descriptions_and_terminals_name_arrays() {
-    let pinion = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/shafts/pinion.toml");
+    let pinion = format!("{}/scenes/shafts/pinion.toml", roulement_tests::ROOT);
     for (text, count) in [
         (with_arrays(&scene(&pose_text("shaft"), &[("effects.per_ball_outputs", "true")]).source), 5),
         (format!("{}\n[interface]\narrays = true\n", std::fs::read_to_string(pinion).unwrap()), 20),

@@ -14,10 +14,8 @@ fn row(table: &str, start: &[&str]) -> Option<csv::StringRecord> {
     if std::env::var_os("ROULEMENT_RENEW").is_some() {
         return None;
     }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("docs/figures/stability")
-        .join(table)
-        .with_extension("csv");
+    let path =
+        Path::new(roulement_tests::ROOT).join("docs/figures/stability").join(table).with_extension("csv");
     let rows: Vec<csv::StringRecord> =
         csv::Reader::from_path(path).unwrap().records().collect::<Result<_, _>>().unwrap();
     let row =

@@ -51,7 +51,7 @@ output_interval = "1 ms"
 
 /// The scene of a text whose files are among the scenes of the project.
 pub fn scene(text: &str) -> SystemScene {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(roulement_tests::ROOT).join("scenes");
     SystemScene::parse(text, None, &folder).unwrap_or_else(|why| panic!("{why}"))
 }
 

@@ -105,7 +105,7 @@ fn closed_form_corrections_of_many_bearings_are_those_of_the_worst() {
 
 #[test]
 fn regression_instructions_of_recorded_machines_grow_with_their_bearings() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/shaft-cost.csv");
+    let path = Path::new(roulement_tests::ROOT).join("docs/figures/shaft-cost.csv");
     let record = fs::read_to_string(path).unwrap();
     let rows: Vec<Vec<&str>> = record.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut compared = 0;
@@ -128,7 +128,7 @@ fn invariant_bearings_of_a_train_of_nine_meshes_take_hardly_more_work_each_than_
 
 #[test]
 fn regression_instructions_of_recorded_trains_grow_with_their_meshes() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/mesh-cost.csv");
+    let path = Path::new(roulement_tests::ROOT).join("docs/figures/mesh-cost.csv");
     let record = fs::read_to_string(path).unwrap();
     let rows: Vec<Vec<f64>> = record
         .lines()

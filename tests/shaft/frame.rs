@@ -158,7 +158,7 @@ fn invariant_energy_closes_in_a_frame_that_turns_faster_and_faster() {
 /// The same bearing by the program for one: its inner race has the mass and the inertia of the shaft.
 #[test]
 fn independent_code_a_shaft_on_one_bearing_moves_in_a_carrier_as_a_race_under_a_wrench() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = std::path::Path::new(roulement_tests::ROOT).join("scenes");
     let text = std::fs::read_to_string(folder.join("thrust.toml")).unwrap();
     let frame = "{ angular_velocity = [15, [[0, 0], [0.001, 8]], 12], acceleration = [3, 0, -40], arm = [0.02, 0.3, 0.1] }";
     let changes = [

@@ -68,7 +68,9 @@ fn orbit(system: &System, bearing: usize) -> f64 {
 /// The text of a package stands alone: it reads to the same machine.
 #[test]
 fn regression_the_text_of_a_package_has_the_hub_too() {
-    let planetary = std::fs::read_to_string("examples/gearbox/planetary.toml").unwrap();
+    let planetary =
+        std::fs::read_to_string(format!("{}/examples/gearbox/planetary.toml", roulement_tests::ROOT))
+            .unwrap();
     for text in [idler("speed = 200"), planetary] {
         let scene = SystemScene::edited(&text).unwrap();
         let packed = SystemScene::of_package(&scene.source).unwrap_or_else(|why| panic!("{why}"));

@@ -215,7 +215,7 @@ fn closed_form_a_bearing_by_its_stiffness_carries_its_share() {
 
 #[test]
 fn independent_data_statics_of_the_public_three_stage_gearbox() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gearbox");
+    let folder = Path::new(roulement_tests::ROOT).join("examples/gearbox");
     let scene = SystemScene::load(&folder.join("three_stage.toml")).unwrap();
     let system = System::new(&scene).unwrap();
     // Torques on the first gears by the numbers of teeth, from 500 N m out; base radii and angles of ISO 21771 from the true centre distances.

@@ -9,7 +9,7 @@ use crate::common::{GEARBOX, ROTOR, assert_order_two, forces, imbalance, run, st
 /// The same bearing by the program for one: its inner race under a wrench has the mass and the inertia of the shaft.
 #[test]
 fn independent_code_a_shaft_on_one_bearing_moves_as_a_race_under_a_wrench() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = std::path::Path::new(roulement_tests::ROOT).join("scenes");
     let text = std::fs::read_to_string(folder.join("thrust.toml")).unwrap();
     let changes = [
         ("solver", "{ max_step = \"4 us\", initial_step = \"4 us\", tolerance = 1e-2 }"),

@@ -124,7 +124,7 @@ fn independent_code_a_ring_on_a_shaft_that_is_held_moves_as_that_of_a_bearing_al
         ("outer.mass", "0.3"),
         ("outer.inertia", "[2e-4, 1.5e-4, 1.5e-4]"),
     ];
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = std::path::Path::new(roulement_tests::ROOT).join("scenes");
     let text = std::fs::read_to_string(folder.join("thrust.toml")).unwrap();
     let alone = [
         ("inner.drive", "\"fixed\""),

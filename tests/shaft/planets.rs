@@ -24,7 +24,7 @@ const BASE: f64 = 0.025 * 0.939_692_620_785_908_4;
 
 /// The shipped example, with the law of creep that takes least, and what is changed.
 fn stage(changes: &[(&str, &str)]) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gearbox/planetary.toml");
+    let folder = Path::new(roulement_tests::ROOT).join("examples/gearbox/planetary.toml");
     let text = std::fs::read_to_string(folder).unwrap();
     let law = "catalogue = \"6203\"\nset = { effects = { creep = \"saturated\", heathcote_slip = false } }";
     let text = text.replace("catalogue = \"6203\"", law);

@@ -80,7 +80,7 @@ fn tables() -> String {
 
 /// Compares a part of docs/shaft.md with what it should be, or renews it.
 fn compare_part(name: &str, table: &str, script: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/shaft.md");
+    let path = Path::new(roulement_tests::ROOT).join("docs/shaft.md");
     let text = fs::read_to_string(&path).unwrap();
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
     let (before, rest) = text.split_once(&begin).unwrap();
@@ -98,8 +98,7 @@ fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
     // One after the other: both renew one file.
     compare_part("keys", &tables(), "scripts/tables");
     let record =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/shaft-cost.csv"))
-            .unwrap();
+        fs::read_to_string(Path::new(roulement_tests::ROOT).join("docs/figures/shaft-cost.csv")).unwrap();
     let rows: Vec<Vec<&str>> = record.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut table = String::from(
         "| bearings | coordinates of the beams | rigid shaft, plain | beams, plain | rigid shaft, caged | beams, caged |\n|---|---|---|---|---|---|\n",
@@ -117,7 +116,7 @@ fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
     }
     compare_part("costs", &table, "scripts/shaft-cost");
     let record =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures/mesh-cost.csv")).unwrap();
+        fs::read_to_string(Path::new(roulement_tests::ROOT).join("docs/figures/mesh-cost.csv")).unwrap();
     let mut table = String::from(
         "| meshes | bearings | a step without meshes | a step with them | of it a bearing | a mesh |\n|---|---|---|---|---|---|\n",
     );
@@ -133,7 +132,7 @@ fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
 
 #[test]
 fn the_example_of_the_document_and_the_shipped_shaft_are_read_and_start() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = Path::new(roulement_tests::ROOT);
     let document = fs::read_to_string(folder.join("docs/shaft.md")).unwrap();
     let example = document.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     let shipped = ["pinion", "housing"]

@@ -329,7 +329,7 @@ fn refusals_of_seats_name_key_value_and_allowed_range() {
         }
     }
     // A scene of its own says what its ring weighs.
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(roulement_tests::ROOT).join("scenes");
     let own = good.replacen("catalogue = \"6205\"", "scene = \"radial.toml\"", 1);
     let refusal = SystemScene::parse(&own, None, &folder).unwrap_err().to_string();
     assert!(refusal.contains("outer.mass") && refusal.contains("\"left\""), "{refusal}");

@@ -15,7 +15,7 @@ const LOOKS: u32 = 200;
 
 /// It runs: mean driving torque [N m], and mean normal force of every mesh \[N].
 fn ran() -> (System, f64, Vec<f64>) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gearbox");
+    let folder = Path::new(roulement_tests::ROOT).join("examples/gearbox");
     let mut system = System::new(&SystemScene::load(&folder.join("three_stage.toml")).unwrap()).unwrap();
     let (mut torque, mut normal, mut count) = (0.0, vec![0.0; 3], 0.0);
     for look in 1..=LOOKS {
@@ -36,7 +36,7 @@ fn ran() -> (System, f64, Vec<f64>) {
 
 #[test]
 fn invariant_the_public_three_stage_gearbox_keeps_its_energy_its_ratio_and_its_bits() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gearbox");
+    let folder = Path::new(roulement_tests::ROOT).join("examples/gearbox");
     let at_start = System::new(&SystemScene::load(&folder.join("three_stage.toml")).unwrap()).unwrap();
     let before = stored(&at_start);
     let (system, torque, normal) = ran();
@@ -73,7 +73,7 @@ fn invariant_the_public_three_stage_gearbox_keeps_its_energy_its_ratio_and_its_b
 /// 2930 where it is solved alone.
 #[test]
 fn regression_a_ball_that_hardly_comes_is_solved_alone() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gearbox");
+    let folder = Path::new(roulement_tests::ROOT).join("examples/gearbox");
     let text = std::fs::read_to_string(folder.join("three_stage.toml")).unwrap();
     let variation = r#"stiffness_variation = [{ amplitude = "15 %" }, { order = 2, amplitude = "5 %" }]"#;
     let text = text.replace("[[mesh]]", &format!("[[mesh]]\n{variation}"));

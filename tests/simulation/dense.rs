@@ -10,7 +10,7 @@ use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, Scripted, play};
 
 fn text(name: &str) -> String {
-    let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/scenes/{name}.toml", roulement_tests::ROOT);
     std::fs::read_to_string(path).unwrap()
 }
 

@@ -342,7 +342,7 @@ fn an_outer_race_that_forces_move_is_refused_beside_an_ideal_cage() {
     // On shafts: in a housing, and in a bore that is tilted, which a structure stands for; straight in the ground it is held.
     let housing = include_str!("../../scenes/shafts/housing.toml");
     let pinion = include_str!("../../scenes/shafts/pinion.toml");
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/shafts");
+    let folder = std::path::Path::new(roulement_tests::ROOT).join("scenes/shafts");
     let parsed = |text: &str| {
         let text = text.replace("[[bearing]]\n", "[[bearing]]\nset = { effects = { cage = \"ideal\" } }\n");
         SystemScene::parse(&text, None, &folder).err().map_or(String::new(), |why| why.to_string())

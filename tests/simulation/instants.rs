@@ -7,7 +7,7 @@ use roulement::simulation::losses::LOSSES;
 use roulement::simulation::play::Scripted;
 
 fn scene(name: &str, changes: &[(&str, &str)]) -> Scene {
-    let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/scenes/{name}.toml", roulement_tests::ROOT);
     Scene::edited(&std::fs::read_to_string(path).unwrap(), changes.iter().copied()).unwrap()
 }
 

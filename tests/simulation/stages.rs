@@ -14,7 +14,7 @@ use roulement::simulation::play::{Rows, play};
 use roulement::simulation::system::Played;
 
 fn text(name: &str) -> String {
-    let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/scenes/{name}.toml", roulement_tests::ROOT);
     std::fs::read_to_string(path).unwrap()
 }
 

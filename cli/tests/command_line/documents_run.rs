@@ -14,8 +14,12 @@ use toml::{Table, Value};
 
 use crate::common::{self, Scratch};
 
-/// Commands that take long, by words in them, and what is added: of the first the arguments are read alone, the second looks at two speeds.
-const LONG: [(&[&str], &[&str]); 2] = [(&["cost"], &["--help"]), (&["modes", "--up-to"], &["--speeds", "2"])];
+/// Commands that take long, by words in them, and what is added: of the first the arguments are read alone, the others look at two speeds.
+const LONG: [(&[&str], &[&str]); 3] = [
+    (&["cost"], &["--help"]),
+    (&["modes", "--up-to"], &["--speeds", "2"]),
+    (&["modes", "examples/gearbox/three_stage.toml"], &["--speeds", "2"]),
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

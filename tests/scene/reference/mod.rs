@@ -51,7 +51,7 @@ fn the_schema_has_all_keys_of_all_scenes_of_the_project() {
     let schema = schema(&reference());
     let mut seen = 0;
     for folder in ["scenes", "scenes/effects", "scenes/cost", "scenes/error"] {
-        for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap() {
+        for entry in fs::read_dir(Path::new(roulement_tests::ROOT).join(folder)).unwrap() {
             let path = entry.unwrap().path();
             if path.extension().is_some_and(|of| of == "toml") {
                 let scene: toml::Table = fs::read_to_string(&path).unwrap().parse().unwrap();

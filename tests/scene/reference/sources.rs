@@ -230,7 +230,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 /// The sources of scenes.
 pub fn sources() -> Vec<Source> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let root = Path::new(roulement_tests::ROOT).join("src");
     let mut found = vec![];
     for folder in ["schema", "effects", "scene", "contact/ball_race/film"] {
         files(&root.join(folder), &mut found);
