@@ -179,6 +179,8 @@ impl Together<'_> {
         let stepped = stepped.filter(|(bearing, _)| !bearing.model.without_states);
         let mut parts: Vec<Part<'_>> = stepped.map(of).collect();
         let tried = try_step(&mut parts, &steps, joined, step, control, &mut buffers);
+        let without_states = self.bearings.iter_mut().filter(|bearing| bearing.model.without_states);
+        without_states.for_each(|bearing| buffers.count(&mut bearing.state.statistics));
         self.bearings[0].buffers = buffers;
         tried
     }

@@ -45,14 +45,14 @@ fn published_radial_integrals_of_sjoevall_for_line_contact() {
         let bearing = Rollers::new(geometry, None);
         let d = Vector6::ith(1, way);
         let force = -bearing.force(&d, &STILL).force[1];
-        let largest = bearing.outputs(&d, &STILL).largest_load;
+        let largest = bearing.outputs(&d, &STILL, &[]).largest_load;
         let own = force / (200.0 * largest);
         assert!((own / integral - 1.0).abs() < 5e-3, "{part}: {own} {integral}");
     }
     // The largest load without clearance is 4.08 F/Z.
     let bearing = Rollers::new(Geometry { count: 200, ..USUAL }, None);
     let d = Vector6::ith(2, 10e-6);
-    let factor = 200.0 * bearing.outputs(&d, &STILL).largest_load / -bearing.force(&d, &STILL).force[2];
+    let factor = 200.0 * bearing.outputs(&d, &STILL, &[]).largest_load / -bearing.force(&d, &STILL).force[2];
     assert!((factor / 4.08 - 1.0).abs() < 2e-3, "{factor}");
 }
 
@@ -171,7 +171,7 @@ fn closed_form_a_tapered_roller_presses_its_rib_and_a_radial_load_induces_an_axi
         let d = Vector6::ith(0, direction * 30e-6);
         let force = bearing.force(&d, &STILL).force;
         let outer = force[0].abs() / 200.0 / contact_angle.sin();
-        let rib = bearing.outputs(&d, &STILL).largest_rib_load;
+        let rib = bearing.outputs(&d, &STILL, &[]).largest_rib_load;
         assert!(
             force[0] * direction < -1e4
                 && (rib / (2.0 * outer * (0.5 * roller_angle).sin()) - 1.0).abs() < 1e-9,
@@ -187,7 +187,7 @@ fn closed_form_a_tapered_roller_presses_its_rib_and_a_radial_load_induces_an_axi
         };
         let place = (-40..=40).map(|k| 1e-7 * f64::from(k)).min_by_key(|x| {
             let loaded =
-                bearing.outputs(&Vector6::new(direction * x, 20e-6, 0.0, 0.0, 0.0, 0.0), &STILL).loaded;
+                bearing.outputs(&Vector6::new(direction * x, 20e-6, 0.0, 0.0, 0.0, 0.0), &STILL, &[]).loaded;
             loaded.abs_diff(100)
         });
         let force =
@@ -426,6 +426,46 @@ fn hard_wherever_rings_are_and_however_slow_rollers_go_all_searches_end() {
 }
 
 #[test]
+fn invariant_rollers_sought_from_where_they_were_are_where_a_search_from_nothing_finds_them() {
+    let mut state = 3u64;
+    let mut any = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for bearing in [Geometry { ribs: [false; 2], ..locating() }, locating(), tapered(1.0)]
+        .map(|of| Rollers::new(of, None))
+    {
+        for speed in [0.0, 100.0, 3000.0] {
+            let mut at = [30.0, 20.0, 10.0, 0.5, 0.0];
+            let mut left = vec![];
+            for step in 0..60 {
+                // Small steps, then some from one side of the clearance to the other.
+                let size = if step % 10 == 9 { 30.0 } else { 0.3 };
+                at = [0, 1, 2, 3, 4].map(|k: usize| {
+                    let moved = at[k] + size * (any() - 0.5) * if k < 3 { 1.0 } else { 0.02 };
+                    moved.clamp(-40.0, 40.0)
+                });
+                let d = displaced(at) + Vector6::ith(3, 0.02 * f64::from(step));
+                let rate = turning(speed);
+                let fresh = bearing.force(&d, &rate);
+                let (near, now) = bearing.leave(&d, &rate, &left);
+                let size = 1.0 + fresh.force.norm();
+                assert!(
+                    (near.force - fresh.force).norm() < 1e-9 * size,
+                    "{speed} {step}: {:e}",
+                    (near.force - fresh.force).norm()
+                );
+                let stiffness = near.by_displacement - fresh.by_displacement;
+                assert!(stiffness.norm() < 1e-6 * (1.0 + fresh.by_displacement.norm()), "{speed} {step}");
+                assert!(near.is_balanced(), "{speed} {step}: {}", near.unbalanced);
+                assert_eq!(bearing.force_near(&d, &rate, &left).force, near.force);
+                left = now;
+            }
+        }
+    }
+}
+
+#[test]
 fn regression_a_tapered_roller_that_its_rib_pushes_up_its_race_comes_to_balance() {
     // Motions of the inner race [m, m, rad] and centrifugal forces \[N], 5 of 2000: steps that ran into the outer line or the rib were halved until there were
     // no trials left, up to a thousand times what may be left away from balance.
@@ -448,7 +488,7 @@ fn regression_a_tapered_roller_that_its_rib_pushes_up_its_race_comes_to_balance(
         ([2.8797668578042296e-5, -3.364132867394474e-5, -4.05136742349804e-5], 1e-4),
         ([3.1098672900874554e-5, -3.4205565930631536e-5, -3.016866572778562e-4], 1e-2),
     ] {
-        let of = roller.settle(&place.into(), centrifugal);
+        let of = roller.settle(&place.into(), centrifugal, None);
         // Searches end at 1e-9 N or 1e-12 of the loads.
         assert!(of.unbalanced < 1e-8, "{place:?}: {:e}", of.unbalanced);
     }

@@ -154,7 +154,7 @@ fn closed_form_a_bearing_by_a_table_of_a_line_is_one_by_its_stiffness_and_a_hard
         );
         let system = system(&text);
         let index = system.scene().link_names().position(|name| name == "third").unwrap();
-        system.outputs().links[index].state
+        system.outputs().links[index].state.clone()
     };
     let [number, line] = [with("5e7"), with("[[0, 0], [\"20 um\", \"1 kN\"]]")];
     assert!(

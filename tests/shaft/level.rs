@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 use roulement::interface::variables::MachineVariables;
+use roulement::model::state::Statistics;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
 
@@ -147,6 +148,24 @@ fn invariant_a_gearbox_on_bearings_without_states_starts_in_balance() {
     system.advance(2e-3).unwrap();
     for (now, then) in forces(&system).iter().zip(&start) {
         assert!((now - then).norm() < 0.02 * largest, "{now} {then}");
+    }
+}
+
+#[test]
+fn regression_work_of_the_integrator_is_counted_without_states_too() {
+    // It stood with bearings that have states, and a machine without any told of no iterations.
+    let work = |without: &[&str]| -> Vec<_> {
+        let mut system = system(&rotor(without));
+        system.advance(1e-3).unwrap();
+        system.bearings().map(|(_, bearing)| bearing.state().statistics).collect()
+    };
+    for without in [vec!["left"], vec!["left", "right"]] {
+        let all = work(&without);
+        assert!(all[0].steps > 10 && all[0].newton.iterations >= all[0].steps, "{without:?}: {all:?}");
+        assert_eq!((all[0].steps, all[0].newton.iterations), (all[1].steps, all[1].newton.iterations));
+        let rejected = |of: &Statistics| (of.rejected_error, of.rejected_newton, of.second_guesses);
+        assert_eq!(rejected(&all[0]), rejected(&all[1]));
+        assert_eq!(all[0].contact_values, 0);
     }
 }
 

@@ -6,7 +6,7 @@ use nalgebra::{Vector3, Vector6};
 use roulement::model::link::spring_bearing::{AxialSupport, Spring, SpringBearing};
 use roulement::model::link::tooth_mesh::{ToothFriction, ToothMesh, Varying};
 use roulement::model::link::variation::{Term, Variation};
-use roulement::model::link::{Law, Link};
+use roulement::model::link::{Law, Link, LinkState};
 use roulement::scene::system::SystemScene;
 use roulement::simulation::system::System;
 
@@ -78,7 +78,7 @@ fn closed_form_two_inertias_swing_against_each_other_through_the_teeth() {
 
 /// Largest error of the tangents of a law against central differences, over the tangents.
 fn of_tangents(link: &Link, displacement: Vector6<f64>, rate: Vector6<f64>) -> f64 {
-    let own = link.force(&displacement, &rate, None);
+    let own = link.force(&displacement, &rate, &LinkState::default());
     let mut worst = 0.0f64;
     for axis in 0..6 {
         let mut by = |steps: [f64; 2], exact: Vector6<f64>, scale: f64| {
@@ -86,7 +86,7 @@ fn of_tangents(link: &Link, displacement: Vector6<f64>, rate: Vector6<f64>) -> f
                 let mut moved = [displacement, rate];
                 moved[0][axis] += sign * steps[0];
                 moved[1][axis] += sign * steps[1];
-                link.force(&moved[0], &moved[1], None).force
+                link.force(&moved[0], &moved[1], &LinkState::default()).force
             };
             let difference = (at(1.0) - at(-1.0)) / (2.0 * (steps[0] + steps[1]));
             worst = worst.max((difference - exact).amax() / scale);
@@ -133,12 +133,12 @@ fn tangents_of_links_are_differences_of_their_forces_and_forces_those_of_a_poten
             // Forces of kN to 1e-13 over steps of 0.1 nm.
             assert!(worst < 3e-4, "{worst:e} at {scale:e}");
             // Without damping it is the slope of what is stored.
-            let still = link.force(&d, &Vector6::zeros(), None);
+            let still = link.force(&d, &Vector6::zeros(), &LinkState::default());
             for axis in 0..6 {
                 let at = |sign: f64| {
                     let mut moved = d;
                     moved[axis] += sign * 1e-9;
-                    link.force(&moved, &Vector6::zeros(), None).stored
+                    link.force(&moved, &Vector6::zeros(), &LinkState::default()).stored
                 };
                 let slope = -(at(1.0) - at(-1.0)) / 2e-9;
                 assert!(
@@ -147,7 +147,7 @@ fn tangents_of_links_are_differences_of_their_forces_and_forces_those_of_a_poten
                     still.force[axis]
                 );
             }
-            assert!(link.force(&d, &rate, None).damped >= 0.0);
+            assert!(link.force(&d, &rate, &LinkState::default()).damped >= 0.0);
         }
     }
 }

@@ -51,7 +51,7 @@ fn closed_form_a_roller_bearing_carries_its_share_and_no_axial_force() {
     assert_eq!(force[0], 0.0);
     assert!((on_ball.x + 150.0).abs() < 1e-3, "{on_ball}");
     // Sjoevall's factor is between that of half a loaded circle and that of a few rollers.
-    let rollers = link.rollers.unwrap();
+    let rollers = *link.rollers().unwrap();
     let factor = 13.0 * rollers.largest_load / force[1].hypot(force[2]);
     assert!((4.08..6.0).contains(&factor), "{factor}");
     assert!((3..=7).contains(&rollers.loaded), "{}", rollers.loaded);
@@ -130,7 +130,7 @@ fn closed_form_ribs_carry_a_thrust_one_way_or_both() {
         let system = system(&located(name, &format!("\"{thrust} N\""), direction));
         let link = &system.outputs().links[0];
         assert!((link.state.force[0] + thrust).abs() < 1e-3 * 300.0, "{name} {thrust}: {}", link.state.force);
-        assert!(link.rollers.unwrap().largest_rib_load > 300.0 / 13.0);
+        assert!(link.rollers().unwrap().largest_rib_load > 300.0 / 13.0);
     }
     // Against its rib nothing holds the shaft.
     let away = scene(&located("NJ 206", "\"-300 N\"", "+x"));
@@ -162,7 +162,7 @@ fn closed_form_a_pair_of_tapered_bearings_has_the_preload_of_its_clearance_and_s
     let axial = |clearance: &str, force: &str| {
         let system = system(&tapered_pair(clearance, force));
         let links = &system.outputs().links;
-        (links[0].state.force[0], links[1].state.force[0], links[0].rollers.unwrap())
+        (links[0].state.force[0], links[1].state.force[0], *links[0].rollers().unwrap())
     };
     // Each bearing alone, pressed together by 8 um.
     let geometry = roulement::model::link::rollers::Geometry {
@@ -230,7 +230,7 @@ fn invariant_the_equilibrium_reports_rollers_with_their_life() {
     let found = MachineEquilibrium::of(&scene(NON_LOCATING), 0.0, 100.0).unwrap();
     let value = found.to_json();
     let of = &value["bearings_by_stiffness"]["roller"];
-    let rollers = found.outputs.links[0].rollers.unwrap();
+    let rollers = found.outputs.links[0].rollers().unwrap();
     assert_eq!(of["largest_load"].as_f64(), Some(rollers.largest_load));
     let hours = rollers.life * 1e6 / (1500.0 * 60.0);
     assert!((of["L10r_hours"].as_f64().unwrap() / hours - 1.0).abs() < 1e-9);
@@ -254,7 +254,7 @@ fn hard_a_misaligned_bore_of_10_mrad_and_a_load_through_the_gap() {
     let system = system(&tilted);
     let link = &system.outputs().links[0];
     let even = crate::common::system(NON_LOCATING);
-    let [tilt, none] = [link, &even.outputs().links[0]].map(|link| link.rollers.unwrap());
+    let [tilt, none] = [link, &even.outputs().links[0]].map(|link| *link.rollers().unwrap());
     assert!(tilt.peak_pressure > 1.2 * none.peak_pressure && tilt.life < none.life, "{tilt:?} {none:?}");
     // A load that turns over: the shaft goes through the gap, and is caught.
     let reversed = NON_LOCATING.replace(
@@ -318,6 +318,6 @@ fn refusals_of_rollers_name_key_value_and_range() {
         "level = \"equilibrium\"",
         "level = \"equilibrium\"\nset = { rollers = { diametral_clearance = \"-5 um\" } }",
     );
-    let loaded = |text: &str| system(text).outputs().links[0].rollers.unwrap().loaded;
+    let loaded = |text: &str| system(text).outputs().links[0].rollers().unwrap().loaded;
     assert!(loaded(&changed) > loaded(NON_LOCATING));
 }

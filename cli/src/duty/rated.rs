@@ -73,7 +73,7 @@ fn of_rollers(scene: &MachineScene, machine: &Machine, share: f64) -> Vec<(Strin
     let (MachineScene::Shaft(scene), Machine::Shaft(system)) = (scene, machine) else { return vec![] };
     let links = scene.link_names().zip(&system.outputs().links);
     let of = |(name, link): (&str, &LinkOutputs)| {
-        let rollers = link.rollers.as_ref()?;
+        let rollers = link.rollers()?;
         let rated = Rated {
             share,
             speed: link.state.rate[3].abs(),

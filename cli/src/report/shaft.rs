@@ -136,7 +136,7 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
             }
             false => {
                 row.extend(force.fixed_rows::<2>(4).iter());
-                if let Some(rollers) = &link.rollers {
+                if let Some(rollers) = link.rollers() {
                     row.extend([rollers.largest_load, rollers.peak_pressure, rollers.loaded as f64]);
                 }
             }
@@ -301,7 +301,7 @@ pub fn write_summary<'a>(
         }
     }
     for (name, link) in scene.link_names().zip(&outputs.links) {
-        if let Some(rollers) = &link.rollers {
+        if let Some(rollers) = link.rollers() {
             let force = &link.state.force;
             let hours = link.hours().map_or(String::new(), |hours| format!(", L10r {hours:.0} h"));
             writeln!(

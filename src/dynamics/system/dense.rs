@@ -42,9 +42,9 @@ pub fn within(
     for (Joint { bearing, race, structure, seat }, motion) in joined.joints.iter().zip(&seats) {
         trials[*structure].add(seat, motion, &bearings[*bearing].state.race(*race).bearing_wrench);
     }
-    for one in joined.links {
+    for (one, before) in joined.links.iter().zip(joined.link_states) {
         let [displacement, rate] = one.motion(|structure| &trials[structure].end);
-        let force = one.force(&displacement, &rate, None).force;
+        let force = one.force(&displacement, &rate, before).force;
         for (index, end) in one.ends.iter().enumerate() {
             trials[end.structure].add_link(end, &(force * link::sign(index)));
         }

@@ -22,9 +22,9 @@ impl SystemStep<'_> {
     pub(super) fn see_structures(&mut self) {
         self.carry_races();
         self.link_forces.clear();
-        for link in self.joined.links {
+        for (link, before) in self.joined.links.iter().zip(self.joined.link_states) {
             let [displacement, rate] = link.motion(|structure| &self.trials[structure].end);
-            self.link_forces.push(link.force(&displacement, &rate, None));
+            self.link_forces.push(link.force(&displacement, &rate, before));
         }
         self.seen.clear();
         for element in self.joined.elements {

@@ -48,6 +48,8 @@ pub struct StepBuffers {
     pub border: Border,
     stages: Stages,
     starts: Starts,
+    /// Work of the last trial.
+    work: StepWork,
 }
 
 /// What is imposed at the end of a stage of a step, before that of the step.
@@ -84,7 +86,7 @@ pub fn try_step(
         // Here and not at the end of a step, so that a state keeps those that its forces were computed with.
         renew_polynomials(model, state, boundary);
     }
-    let StepBuffers { unknowns, newton, border, stages, starts } = workspace;
+    let StepBuffers { unknowns, newton, border, stages, starts, work: last_work } = workspace;
     let mut work = Work { newton: NewtonWork::default(), second: 0, buffers: newton };
     let mut stopped = None;
     if !before_end.is_empty() {
@@ -140,16 +142,17 @@ pub fn try_step(
             }
         }
     };
+    let done = StepWork {
+        newton: work.newton,
+        second: work.second,
+        failure: tried.as_ref().err().map(|(_, failure)| *failure),
+    };
     for Part { state, workspace, .. } in &mut *parts {
         state.matrix = std::mem::take(&mut workspace.kept);
         state.control = *control;
-        count(&mut state.statistics, workspace.counted, work.newton, work.second);
-        match tried {
-            Err((_, StepFailure::Newton(..))) => state.statistics.rejected_newton += 1,
-            Err((_, StepFailure::Error(_))) => state.statistics.rejected_error += 1,
-            Ok(_) => {}
-        }
+        done.count(&mut state.statistics, workspace.counted);
     }
+    *last_work = done;
     let (ends, step, trials) = tried?;
     let mut rest = &unknowns[..];
     for (index, (part, end)) in parts.iter_mut().zip(&ends).enumerate() {
@@ -199,13 +202,37 @@ impl Work<'_> {
     }
 }
 
-/// Adds the work of a bearing in a step to what was done before.
-fn count(statistics: &mut Statistics, of: Counted, work: NewtonWork, second: u64) {
-    statistics.newton.iterations += work.iterations;
-    statistics.newton.factorisations += work.factorisations + of.renewals;
-    statistics.contact_values += of.contact_values;
-    statistics.contact_tangents += of.contact_tangents;
-    statistics.second_guesses += second;
+/// Work of a trial of a step, which all bearings share.
+#[derive(Clone, Copy, Debug, Default)]
+struct StepWork {
+    newton: NewtonWork,
+    /// Solves that began anew.
+    second: u64,
+    /// Why the step was not taken.
+    failure: Option<StepFailure>,
+}
+
+impl StepWork {
+    /// Adds it to what was done before, with that of a bearing alone.
+    fn count(&self, statistics: &mut Statistics, of: Counted) {
+        statistics.newton.iterations += self.newton.iterations;
+        statistics.newton.factorisations += self.newton.factorisations + of.renewals;
+        statistics.contact_values += of.contact_values;
+        statistics.contact_tangents += of.contact_tangents;
+        statistics.second_guesses += self.second;
+        match self.failure {
+            Some(StepFailure::Newton(..)) => statistics.rejected_newton += 1,
+            Some(StepFailure::Error(_)) => statistics.rejected_error += 1,
+            None => {}
+        }
+    }
+}
+
+impl StepBuffers {
+    /// Adds the work of the last trial to what was done before, for a bearing that was no part of it.
+    pub fn count(&self, statistics: &mut Statistics) {
+        self.work.count(statistics, Counted::default());
+    }
 }
 
 /// The state of a structure after a step: its energies summed.

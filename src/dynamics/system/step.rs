@@ -17,7 +17,7 @@ use crate::dynamics::rest;
 use crate::dynamics::stages::{Stage, Stages};
 use crate::model::Model;
 use crate::model::bodies::Race;
-use crate::model::link::{Link, LinkForce};
+use crate::model::link::{Link, LinkForce, LinkState};
 use crate::model::state::{KeptMatrix, State};
 use crate::model::structure::{Structure, StructureState};
 use crate::numerics::esdirk;
@@ -59,6 +59,8 @@ pub struct Joined<'a> {
     pub joints: &'a [Joint],
     /// Links.
     pub links: &'a [Link],
+    /// Their states at the start of the step.
+    pub link_states: &'a [LinkState],
     /// Bearings without states.
     pub elements: &'a [ElementStep<'a>],
 }

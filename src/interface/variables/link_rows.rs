@@ -110,28 +110,28 @@ const OF_SPRING: &[LinkRow] = &[
 /// Those of a bearing by rollers alone.
 const OF_ROLLERS: &[LinkRow] = &[
     row("largest_load", FORCE, "largest load of a roller on the inner race of", |link| {
-        link.rollers.map_or(0.0, |rollers| rollers.largest_load)
+        link.rollers().map_or(0.0, |rollers| rollers.largest_load)
     }),
     row("largest_rib_load", FORCE, "largest force of a rib on the end of a roller of", |link| {
-        link.rollers.map_or(0.0, |rollers| rollers.largest_rib_load)
+        link.rollers().map_or(0.0, |rollers| rollers.largest_rib_load)
     }),
     row("peak_pressure", (units::PASCAL, 1e9), "largest contact pressure of", |link| {
-        link.rollers.map_or(0.0, |rollers| rollers.peak_pressure)
+        link.rollers().map_or(0.0, |rollers| rollers.peak_pressure)
     }),
     row("loaded_rollers", (units::ONE, 10.0), "number of rollers that the inner race presses, of", |link| {
-        link.rollers.map_or(0.0, |rollers| rollers.loaded as f64)
+        link.rollers().map_or(0.0, |rollers| rollers.loaded as f64)
     }),
     row(
         "life.L10r",
         (units::ONE, 1e3),
         "reference rating life in million revolutions under the loads of this moment, of",
-        |link| link.rollers.map_or(0.0, |rollers| rollers.life),
+        |link| link.rollers().map_or(0.0, |rollers| rollers.life),
     ),
     row(
         "life.static_safety",
         (units::ONE, 1.0),
         "load that leaves a mark over that at the largest pressure of",
-        |link| link.rollers.map_or(0.0, |rollers| rollers.static_safety),
+        |link| link.rollers().map_or(0.0, |rollers| rollers.static_safety),
     ),
 ];
 

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use super::structure::{Map, Spin, Structure, StructureState, Turning};
 pub use force::LinkForce;
-use rollers::Rollers;
+use rollers::{Left, Rollers};
 use spring_bearing::SpringBearing;
 use tooth_mesh::ToothMesh;
 use variation::Variation;
@@ -95,7 +95,7 @@ pub struct Link {
 }
 
 /// State of a link: its motion and force now, its energies since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LinkState {
     /// \[m, rad] displacement of the first end against the second.
     pub displacement: Vector6<f64>,
@@ -115,6 +115,8 @@ pub struct LinkState {
     pub damped: f64,
     /// [-] force that is left on a body inside of it, over what may be ([`LinkForce::unbalanced`]).
     pub unbalanced: f64,
+    /// Its rollers as they were left.
+    pub rollers: Vec<Left>,
 }
 
 impl LinkState {
@@ -139,16 +141,16 @@ impl Link {
         })
     }
 
-    /// Force at a displacement and a rate; of teeth that stay in contact on a flank, if one is named.
-    pub fn force(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, flank: Option<usize>) -> LinkForce {
+    /// Force at a displacement and a rate, near a state.
+    pub fn force(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, near: &LinkState) -> LinkForce {
         match &self.law {
-            Law::Mesh(mesh) => mesh.force(displacement, rate, flank),
+            Law::Mesh(mesh) => mesh.force(displacement, rate, None),
             Law::Spring(bearing) => bearing.force(displacement, rate),
-            Law::Rollers(bearing) => bearing.force(displacement, rate),
+            Law::Rollers(bearing) => bearing.force_near(displacement, rate, &near.rollers),
         }
     }
 
-    /// Force without what varies as the link turns: as statics and natural frequencies take it.
+    /// Force without what varies as the link turns, as statics and natural frequencies take it; of teeth that stay in contact on a flank, if one is named.
     pub fn mean_force(
         &self,
         displacement: &Vector6<f64>,
@@ -184,7 +186,11 @@ impl Link {
         state: impl Fn(usize) -> &'a StructureState,
     ) -> LinkState {
         let [displacement, rate] = self.motion(state);
-        let LinkForce { force, stored, damped, unbalanced, .. } = self.force(&displacement, &rate, None);
+        let (on, rollers) = match &self.law {
+            Law::Rollers(bearing) => bearing.leave(&displacement, &rate, &before.rollers),
+            Law::Mesh(_) | Law::Spring(_) => (self.force(&displacement, &rate, before), vec![]),
+        };
+        let LinkForce { force, stored, damped, unbalanced, .. } = on;
         let powers = [-force.dot(&rate), damped];
         let part = |k: usize| 0.5 * h * (before.powers[k] + powers[k]);
         LinkState {
@@ -197,6 +203,7 @@ impl Link {
             taken: before.taken + part(0),
             damped: before.damped + part(1),
             unbalanced,
+            rollers,
         }
     }
 

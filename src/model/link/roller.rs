@@ -13,7 +13,9 @@
 //! together: `V` has one minimum over `q`, and Newton's method with a line search cannot miss it. The force on the inner race is `-dV/dp`, its
 //! stiffness that of both races in series, `H_i - H_i (H_i + H_o)^-1 H_i`. Without centrifugal force and ribs a roller is midway, `q = p/2`, at once.
 
-use nalgebra::{Matrix3, Vector3};
+use std::array::from_fn;
+
+use nalgebra::{Cholesky, Const, Matrix3, Vector3};
 
 use super::one_sided::OneSided;
 use crate::numerics::elementary::{ln, pow};
@@ -26,6 +28,8 @@ const LINE: f64 = 35948.0;
 /// Stations along a line, those of Gauss: forces of a bearing are those of 400 to 1e-3, and to 4e-3 at a tilt of 10 mrad (`order_` in
 /// `tests/equilibrium/rollers.rs`). As many laminae of one length are no better, and edges of partly loaded lines no point suits.
 const STATIONS: usize = 16;
+/// Stations that are taken at a time.
+const LANES: usize = 4;
 /// Iterations of one roller.
 const MAX_ITERATIONS: u32 = 100;
 /// [-] part of a line that carries where next to nothing presses it, a guess.
@@ -36,6 +40,8 @@ const LONGEST_STEP: f64 = 1e-5;
 const MAX_TRIALS: u32 = 30;
 /// [-] a trial this near to where the next contact comes in says nothing about that contact.
 const NEAR: f64 = 0.9;
+/// [-] unbalanced force over the loads at work up to which a search goes on from where the roller was.
+const NEAR_BALANCE: f64 = 0.3;
 /// [-] unbalanced force over the loads at work that is rounding.
 const TOLERANCE: f64 = 1e-12;
 /// [-] part of the expected fall of the potential that is enough, and part of the potential that is its rounding.
@@ -78,15 +84,49 @@ impl Profile {
     }
 }
 
-/// A station of the lines of a roller.
+/// Stations of the lines of a roller, by fours: what is done with them is done with four numbers at a time. Those that fill up the last four never
+/// touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Station {
-    /// \[m] place along the roller.
-    place: f64,
-    /// [-] share of the load.
-    share: f64,
+struct Stations {
+    /// \[m] places along the roller.
+    place: [f64; LANES],
+    /// [-] shares of the load.
+    share: [f64; LANES],
     /// \[m] drop of the profile.
-    drop: f64,
+    drop: [f64; LANES],
+}
+
+impl Stations {
+    /// Place \[m], share and drop \[m] of each.
+    fn all(stations: &[[f64; 3]]) -> Vec<Self> {
+        let of = |four: &[[f64; 3]]| {
+            let number = |k: usize, none: f64| from_fn(|lane| four.get(lane).map_or(none, |of| of[k]));
+            Self { place: number(0, 0.0), share: number(1, 0.0), drop: number(2, f64::INFINITY) }
+        };
+        stations.chunks(LANES).map(of).collect()
+    }
+}
+
+/// Sums over stations at an approach \[m] in the middle of the line that changes by a `lean` along it, over the stiffness of the line: load, its couple
+/// about the middle, their derivatives by approach and lean (three), energy over 9/19.
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn sums(stations: &[Stations], way: f64, lean: f64) -> [f64; 6] {
+    let mut sums = [[0.0; LANES]; 6];
+    for of in stations {
+        let approach: [f64; LANES] = from_fn(|k| larger_than_zero(way + lean * of.place[k] - of.drop[k]));
+        let roots = ninth_roots(approach);
+        for k in 0..LANES {
+            let root = if approach[k] > 0.0 { of.share[k] * roots[k] } else { 0.0 };
+            let (own, slope, place) = (root * approach[k], POWER * root, of.place[k]);
+            sums[0][k] += own;
+            sums[1][k] += own * place;
+            sums[2][k] += slope;
+            sums[3][k] += slope * place;
+            sums[4][k] += slope * place * place;
+            sums[5][k] += own * approach[k];
+        }
+    }
+    sums.map(|[a, b, c, d]| (a + b) + (c + d))
 }
 
 /// The line along which a roller touches a race.
@@ -124,7 +164,7 @@ pub struct Roller {
     pub ribs: Vec<Rib>,
     /// \[m] half of its effective length.
     half: f64,
-    stations: Vec<Station>,
+    stations: Vec<Stations>,
 }
 
 /// A roller in balance.
@@ -174,13 +214,10 @@ impl Roller {
         stations: Option<usize>,
     ) -> Self {
         let half = 0.5 * length;
-        let station = |[at, weight]: [f64; 2]| Station {
-            place: half * at,
-            share: 0.5 * weight,
-            drop: profile.drop(half * at, diameter, length),
-        };
-        let stations = gauss(stations.unwrap_or(STATIONS)).into_iter().map(station).collect();
-        Self { lines, ribs, half, stations }
+        let station =
+            |[at, weight]: [f64; 2]| [half * at, 0.5 * weight, profile.drop(half * at, diameter, length)];
+        let stations: Vec<_> = gauss(stations.unwrap_or(STATIONS)).into_iter().map(station).collect();
+        Self { lines, ribs, half, stations: Stations::all(&stations) }
     }
 
     fn at(&self, q: &Vector3<f64>, p: &Vector3<f64>) -> Contacts {
@@ -198,21 +235,8 @@ impl Roller {
             if way + (lean * self.half).abs() <= 0.0 {
                 continue;
             }
-            let [mut load, mut couple, mut k, mut bend, mut tilt, mut elastic] = [0.0; 6];
-            for Station { place, share, drop } in &self.stations {
-                let approach = way + lean * place - drop;
-                if approach <= 0.0 {
-                    continue;
-                }
-                let root = line.stiffness * share * ninth_root(approach);
-                let (own, slope) = (root * approach, POWER * root);
-                load += own;
-                couple += own * place;
-                k += slope;
-                bend += slope * place;
-                tilt += slope * place * place;
-                elastic += own * approach;
-            }
+            let [load, couple, k, bend, tilt, elastic] =
+                sums(&self.stations, way, lean).map(|sum| line.stiffness * sum);
             let lever = Vector3::z() * line.side;
             let n = &line.normal;
             of.loads[race] = load;
@@ -234,33 +258,28 @@ impl Roller {
         of
     }
 
-    /// The roller in balance with the inner race at `p` \[m, m, rad], under a centrifugal force \[N].
-    pub fn settle(&self, p: &Vector3<f64>, centrifugal: f64) -> Settled {
+    /// The roller in balance with the inner race at `p` \[m, m, rad], under a centrifugal force \[N], sought from about where it is, if that is known.
+    pub fn settle(&self, p: &Vector3<f64>, centrifugal: f64, about: Option<Vector3<f64>>) -> Settled {
         let outside = Vector3::y() * centrifugal;
         // Moments count by the force at its ends.
         let sized = |r: &Vector3<f64>| Vector3::new(r.x, r.y, r.z / self.half);
         let residual = |at: &Contacts| outside - at.pressed[0] - at.pressed[1];
-        let mut place = p * 0.5;
-        let mut here = self.at(&place, p);
-        if centrifugal > 0.0 || !self.ribs.is_empty() {
-            let rest = self.at_rest(p, centrifugal);
-            let there = self.at(&rest, p);
-            if there.elastic - outside.dot(&rest) < here.elastic - outside.dot(&place) {
-                (place, here) = (rest, there);
-            }
-        }
+        let weight = |at: &Contacts| at.loads[0] + at.loads[1] + at.rib + centrifugal;
+        let near = about.map(|place| (place, self.at(&place, p)));
+        let near = near.filter(|(_, at)| sized(&residual(at)).norm() <= NEAR_BALANCE * weight(at));
+        let (mut place, mut here) = near.unwrap_or_else(|| self.start(p, centrifugal));
         let mut r = residual(&here);
         for _ in 0..MAX_ITERATIONS {
             let stiffness = here.stiffness[0] + here.stiffness[1];
-            let size = here.loads[0] + here.loads[1] + here.rib + centrifugal;
+            let size = weight(&here);
             let ways = place.x.abs() + place.y.abs() + (self.half * place.z).abs();
             let rounding = ROUND_OFF_UNITS * f64::EPSILON * self.largest(&stiffness) * ways;
             if sized(&r).norm() <= (TOLERANCE * size).max(rounding).max(NOTHING) {
                 break;
             }
             // What nothing holds goes far, and nothing holds a roller off all contacts.
-            let inverse = self.inverse(&stiffness);
-            let whole = inverse.map_or_else(|| r * (LONGEST_STEP / r.norm()), |inverse| inverse * r);
+            let factors = self.factors(&stiffness);
+            let whole = factors.map_or_else(|| r * (LONGEST_STEP / r.norm()), |factors| factors.solve(&r));
             let far = whole.x.abs().max(whole.y.abs()).max((self.half * whole.z).abs());
             let step = whole * (LONGEST_STEP / far.max(LONGEST_STEP));
             let mut part = 1.0;
@@ -297,8 +316,8 @@ impl Roller {
             (place, here, r) = next;
         }
         let [inner, outer] = &here.stiffness;
-        let inverse = self.inverse(&(inner + outer)).unwrap_or_else(Matrix3::zeros);
-        let follows = inverse * inner;
+        let factors = self.factors(&(inner + outer));
+        let follows = factors.map_or_else(Matrix3::zeros, |factors| factors.solve(inner));
         Settled {
             place,
             loads: here.loads,
@@ -309,6 +328,20 @@ impl Roller {
             stored: here.elastic - outside.dot(&place),
             unbalanced: sized(&r).norm(),
         }
+    }
+
+    /// Where a search begins that nothing is known for: midway, or where the inner race does not press, whichever is lower.
+    fn start(&self, p: &Vector3<f64>, centrifugal: f64) -> (Vector3<f64>, Contacts) {
+        let midway = p * 0.5;
+        let here = self.at(&midway, p);
+        if centrifugal > 0.0 || !self.ribs.is_empty() {
+            let rest = self.at_rest(p, centrifugal);
+            let there = self.at(&rest, p);
+            if there.elastic - centrifugal * rest.y < here.elastic - centrifugal * midway.y {
+                return (rest, there);
+            }
+        }
+        (midway, here)
     }
 
     /// \[m, m, rad] about where a roller is that the inner race does not press: tilted by as much as lets go of ribs, on the outer race if it is pressed there.
@@ -329,10 +362,16 @@ impl Roller {
         let outer = &self.lines[1];
         let along = outer.normal.x * rest.x;
         let touches =
-            self.stations.iter().map(|at| outer.gap + at.drop - along - outer.side * rest.z * at.place);
+            self.each_station().map(|[place, drop]| outer.gap + drop - along - outer.side * rest.z * place);
         let first = touches.fold(f64::INFINITY, f64::min);
         rest.y = (first + pow(centrifugal / (FEW * outer.stiffness), 1.0 / POWER)) / outer.normal.y;
         rest
+    }
+
+    /// \[m] place of each station, and drop there.
+    fn each_station(&self) -> impl Iterator<Item = [f64; 2]> {
+        let each = |of: &Stations| from_fn::<_, LANES, _>(|k| [of.place[k], of.drop[k]]);
+        self.stations.iter().flat_map(each)
     }
 
     /// [-] part of a step on which nothing touches that did not before: so far its fall is the expected one.
@@ -346,7 +385,7 @@ impl Roller {
         };
         for (race, line) in self.lines.iter().enumerate() {
             let (gap, way) = (line.gap - line.normal.dot(&moved[race]), line.normal.dot(step));
-            for Station { place, drop, .. } in &self.stations {
+            for [place, drop] in self.each_station() {
                 let lever = line.side * place;
                 comes_in(gap + drop - lever * moved[race].z, way + lever * step.z);
             }
@@ -363,12 +402,12 @@ impl Roller {
         stiffness[(0, 0)].max(stiffness[(1, 1)]).max(of_tilt)
     }
 
-    /// Inverse of a stiffness, which next to nothing is added to; none where there is none.
-    fn inverse(&self, stiffness: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    /// Factors of a stiffness, which next to nothing is added to; none where there is none.
+    fn factors(&self, stiffness: &Matrix3<f64>) -> Option<Cholesky<f64, Const<3>>> {
         let least = NO_STIFFNESS * self.largest(stiffness);
         let scale = Vector3::new(1.0, 1.0, self.half * self.half);
         let held = stiffness + Matrix3::from_diagonal(&(scale * least));
-        held.cholesky().map(|factors| factors.inverse())
+        held.cholesky()
     }
 
     /// \[m] approaches of a roller at a place \[m] along both lines, by the motions of it and the inner race; 0 where it does not touch.
@@ -382,18 +421,27 @@ impl Roller {
     }
 }
 
-/// Ninth root of a normal number above 0: a first guess by its exponent, to 1 %, then three steps of Halley, each of which cubes the error. To the last bits, in
-/// sums, products and quotients alone.
+/// A number, or 0 where it is below.
 #[inline(always)]
-fn ninth_root(x: f64) -> f64 {
+fn larger_than_zero(x: f64) -> f64 {
+    if x > 0.0 { x } else { 0.0 }
+}
+
+/// Ninth roots of normal numbers above 0: first guesses by their exponents, to 1 %, then three steps of Halley, each of which cubes the error. To the last
+/// bits, in sums, products and quotients alone. Where a number is 0, something finite.
+#[inline(always)]
+fn ninth_roots(x: [f64; LANES]) -> [f64; LANES] {
     const BIAS: u64 = 1023 << 52;
-    let mut root = f64::from_bits(x.to_bits() / 9 + BIAS / 9 * 8);
+    let mut roots = x.map(|x| f64::from_bits(x.to_bits() / 9 + BIAS / 9 * 8));
     for _ in 0..3 {
-        let cube = root * root * root;
-        let power = cube * cube * cube;
-        root *= (4.0 * power + 5.0 * x) / (5.0 * power + 4.0 * x);
+        roots = from_fn(|k| {
+            let (root, x) = (roots[k], x[k]);
+            let cube = root * root * root;
+            let power = cube * cube * cube;
+            root * ((4.0 * power + 5.0 * x) / (5.0 * power + 4.0 * x))
+        });
     }
-    root
+    roots
 }
 
 /// Points of Gauss between -1 and 1, with their weights: roots of Legendre's polynomial.

@@ -12,6 +12,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
+use serde::{Deserialize, Serialize};
 
 use super::LinkForce;
 use super::roller::{Line, Profile, Rib, Roller, Settled};
@@ -153,6 +154,15 @@ pub struct RollerOutputs {
     pub stiffness: Matrix6<f64>,
 }
 
+/// A roller as it was left: where it is looked for next.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Left {
+    /// \[m, m, rad] its motion in its plane.
+    pub place: Vector3<f64>,
+    /// \[m, m, rad] that of the inner race.
+    pub race: Vector3<f64>,
+}
+
 /// A roller of a bearing at a displacement.
 struct Seen {
     cosine: f64,
@@ -227,8 +237,8 @@ impl Rollers {
         [over_rate * rate * rate, 2.0 * over_rate * rate]
     }
 
-    /// Every roller at a displacement from the middle, under a centrifugal force \[N].
-    fn each(&self, d: &Vector6<f64>, centrifugal: f64) -> impl Iterator<Item = Seen> {
+    /// Every roller at a displacement from the middle, under a centrifugal force \[N], from where they were left, if that is known.
+    fn each(&self, d: &Vector6<f64>, centrifugal: f64, left: &[Left]) -> impl Iterator<Item = Seen> {
         let orbit = 0.5 * self.geometry.pitch_diameter;
         let first = self.geometry.first_azimuth + self.ratio * d[3];
         let [x, y, z, tilt_y, tilt_z] = [d[0], d[1], d[2], d[4], d[5]];
@@ -236,17 +246,54 @@ impl Rollers {
             let (sine, cosine) = (first + TAU * index as f64 / self.geometry.count as f64).sin_cos();
             let tilt = tilt_z * cosine - tilt_y * sine;
             let moved = Vector3::new(x - orbit * tilt, y * cosine + z * sine, tilt);
-            Seen { cosine, sine, moved, settled: self.roller.settle(&moved, centrifugal) }
+            // Both races are about as stiff.
+            let about = left.get(index).map(|left| left.place + (moved - left.race) * 0.5);
+            Seen { cosine, sine, moved, settled: self.roller.settle(&moved, centrifugal, about) }
         })
     }
 
     /// Force and moment on the shaft.
     pub fn force(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>) -> LinkForce {
+        self.force_near(displacement, rate, &[])
+    }
+
+    /// The same, with rollers sought from where they were left.
+    pub fn force_near(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, left: &[Left]) -> LinkForce {
+        let [centrifugal, _] = self.centrifugal(rate[3]);
+        self.sum(displacement, rate, self.each(&(displacement - self.rest), centrifugal, left))
+    }
+
+    /// The same, and where rollers are then.
+    pub fn leave(
+        &self,
+        displacement: &Vector6<f64>,
+        rate: &Vector6<f64>,
+        left: &[Left],
+    ) -> (LinkForce, Vec<Left>) {
+        let [centrifugal, _] = self.centrifugal(rate[3]);
+        let mut now = Vec::with_capacity(self.geometry.count);
+        let d = displacement - self.rest;
+        let each = self.each(&d, centrifugal, left);
+        let on = self.sum(
+            displacement,
+            rate,
+            each.inspect(|Seen { moved, settled, .. }| now.push(Left { place: settled.place, race: *moved })),
+        );
+        (on, now)
+    }
+
+    /// Force and moment of all rollers on the shaft, and what dampers add.
+    fn sum(
+        &self,
+        displacement: &Vector6<f64>,
+        rate: &Vector6<f64>,
+        each: impl Iterator<Item = Seen>,
+    ) -> LinkForce {
         let d = displacement - self.rest;
         let orbit = 0.5 * self.geometry.pitch_diameter;
-        let [centrifugal, by_rate] = self.centrifugal(rate[3]);
+        let [_, by_rate] = self.centrifugal(rate[3]);
         let mut on = LinkForce::none();
-        for Seen { cosine: c, sine: s, moved, settled } in self.each(&d, centrifugal) {
+        for Seen { cosine: c, sine: s, moved, settled } in each {
             // Motion of a race in the plane by the displacement, and the same by the azimuth.
             let plane = |c: f64, s: f64| {
                 Matrix3x6::from_rows(&[
@@ -287,10 +334,10 @@ impl Rollers {
         on
     }
 
-    /// What it does there: loads, pressures and life by laminae.
-    pub fn outputs(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>) -> RollerOutputs {
+    /// What it does there, with rollers sought from where they were left: loads, pressures and life by laminae.
+    pub fn outputs(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, left: &[Left]) -> RollerOutputs {
         let Geometry { diameter, length, profile, .. } = self.geometry;
-        let stiffness = -self.force(displacement, rate).by_displacement;
+        let stiffness = -self.force_near(displacement, rate, left).by_displacement;
         let mut of = RollerOutputs { static_safety: SAFEST, stiffness, ..RollerOutputs::default() };
         let mut laminae = Laminae::default();
         let [centrifugal, _] = self.centrifugal(rate[3]);
@@ -298,7 +345,7 @@ impl Rollers {
         // [1/m] curvatures of roller and race together.
         let curvatures =
             [1.0 - self.geometry.gamma(), 1.0 + self.geometry.gamma()].map(|of| 2.0 / (diameter * of));
-        for Seen { moved, settled, .. } in self.each(&(displacement - self.rest), centrifugal) {
+        for Seen { moved, settled, .. } in self.each(&(displacement - self.rest), centrifugal, left) {
             let load = settled.loads[0];
             of.largest_load = of.largest_load.max(load);
             of.largest_rib_load = of.largest_rib_load.max(settled.rib);

@@ -144,7 +144,7 @@ impl MachineEquilibrium {
             let of = all.map(|(name, link)| {
                 let [force, moment] =
                     [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
-                let value = match link.rollers {
+                let value = match link.rollers() {
                     None => json!({ "force": force, "moment": moment }),
                     Some(rollers) => json!({
                         "force": force,
@@ -360,14 +360,17 @@ impl MachineEquilibrium {
                     link.state.displacement[3] * 1e3
                 )?,
                 false => {
-                    let how =
-                        if link.rollers.is_some() { "rollers without friction" } else { "by its stiffness" };
+                    let how = if link.rollers().is_some() {
+                        "rollers without friction"
+                    } else {
+                        "by its stiffness"
+                    };
                     writeln!(
                         f,
                         "\n{name:<16} force on the shaft x {:.2} y {:.2} z {:.2} N, moment y {:.5} z {:.5} N m ({how})",
                         on[0], on[1], on[2], on[4], on[5]
                     )?;
-                    if let Some(rollers) = &link.rollers {
+                    if let Some(rollers) = link.rollers() {
                         write_rollers(f, rollers, link.hours())?;
                     }
                 }

@@ -112,7 +112,7 @@ impl System {
         }
         for (link, state) in self.structures.links.iter().zip(&self.structures.link_states) {
             let map = of_link(link, &ends);
-            let force = link.force(&state.displacement, &state.rate, None);
+            let force = link.force(&state.displacement, &state.rate, state);
             whole.stiffness -= map.tr_mul(&(force.by_displacement * &map));
             whole.damping -= map.tr_mul(&(force.by_rate * &map));
         }

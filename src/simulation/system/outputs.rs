@@ -1,6 +1,7 @@
 //! Outputs of shafts on their bearings and of their housings: motion at points, drive, energies.
 
 use std::f64::consts::TAU;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DVector, Vector3};
 
@@ -56,8 +57,22 @@ pub struct LinkOutputs {
     pub state: LinkState,
     /// Outputs of teeth alone.
     pub teeth: TeethOutputs,
-    /// Outputs of rollers alone.
-    pub rollers: Option<RollerOutputs>,
+    rollers: Option<Unseen>,
+}
+
+/// Rollers of a link, whose outputs are found when they are first asked for: steps do without.
+#[derive(Clone, Debug)]
+struct Unseen {
+    links: Arc<Vec<Link>>,
+    index: usize,
+    found: OnceLock<RollerOutputs>,
+}
+
+impl PartialEq for Unseen {
+    /// What there is to find follows from the state of the link.
+    fn eq(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
 }
 
 /// Outputs of teeth in mesh.
@@ -74,9 +89,9 @@ pub struct TeethOutputs {
 }
 
 impl LinkOutputs {
-    /// Outputs of a link in a state.
-    pub fn of(link: &Link, state: &LinkState) -> Self {
-        let teeth = match &link.law {
+    /// Outputs of one of the links in a state.
+    pub fn of(links: &Arc<Vec<Link>>, index: usize, state: &LinkState) -> Self {
+        let teeth = match &links[index].law {
             Law::Mesh(mesh) => {
                 let [one, other] = mesh.flank_forces(&state.displacement, &state.rate);
                 TeethOutputs {
@@ -88,17 +103,26 @@ impl LinkOutputs {
             }
             Law::Spring(_) | Law::Rollers(_) => TeethOutputs::default(),
         };
-        let rollers = match &link.law {
-            Law::Rollers(bearing) => Some(bearing.outputs(&state.displacement, &state.rate)),
-            Law::Mesh(_) | Law::Spring(_) => None,
-        };
-        Self { state: *state, teeth, rollers }
+        let rollers = matches!(links[index].law, Law::Rollers(_)).then(|| Unseen {
+            links: links.clone(),
+            index,
+            found: OnceLock::new(),
+        });
+        Self { state: state.clone(), teeth, rollers }
+    }
+
+    /// Outputs of rollers; none of other links.
+    pub fn rollers(&self) -> Option<&RollerOutputs> {
+        let Unseen { links, index, found } = self.rollers.as_ref()?;
+        let Law::Rollers(bearing) = &links[*index].law else { return None };
+        let LinkState { displacement, rate, rollers, .. } = &self.state;
+        Some(found.get_or_init(|| bearing.outputs(displacement, rate, rollers)))
     }
 
     /// \[h] reference life of rollers at the present speed; none of others, or at rest.
     pub fn hours(&self) -> Option<f64> {
         let speed = self.state.rate[3].abs();
-        let life = self.rollers.as_ref().filter(|_| speed > 0.0)?.life;
+        let life = self.rollers().filter(|_| speed > 0.0)?.life;
         Some(life * 1e6 * TAU / speed / 3600.0)
     }
 }

@@ -71,6 +71,8 @@ impl System {
             && snapshot.inputs.fits(&self.structures.inputs)
             && snapshot.paths.fits(&self.structures.inputs)
             && snapshot.links.len() == self.structures.link_states.len()
+            && (snapshot.links.iter().zip(&self.structures.link_states))
+                .all(|(one, own)| one.rollers.len() == own.rollers.len())
             && snapshot.elements.len() == self.structures.element_states.len()
             && (snapshot.elements.iter().zip(&self.structures.element_states))
                 .all(|(one, own)| one.rested.len() == own.rested.len())

@@ -80,12 +80,14 @@ impl System {
         let boundaries: Vec<_> =
             bearings.iter().map(|bearing| bearing.boundary(bearing.state.time)).collect();
         let of_elements = elements::steps(&elements, &element_states, &bearings, &boundaries, 0.0);
-        let joined = Joined { joints: &stepped, links: &links, elements: &of_elements };
+        let link_states: Vec<_> =
+            links.iter().map(|link| link.started(|structure| &states[structure])).collect();
+        let joined =
+            Joined { joints: &stepped, links: &links, link_states: &link_states, elements: &of_elements };
         let of_parts: Vec<&Simulation> =
             bearings.iter().filter(|bearing| !bearing.model.without_states).collect();
         let states = started(&carriers, &steps, joined, &of_parts);
         drop(of_elements);
-        let link_states = links.iter().map(|link| link.started(|structure| &states[structure])).collect();
         let solver = scene.solver();
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
         bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
@@ -132,9 +134,8 @@ fn started(
         let motion = trials[*structure].seat(&carriers[*structure].structure, seat);
         trials[*structure].add(seat, &motion, &bearings[*bearing].state.race(*race).bearing_wrench);
     }
-    for one in joined.links {
-        let [displacement, rate] = one.motion(|structure| &trials[structure].end);
-        let force = one.force(&displacement, &rate, None).force;
+    for (one, own) in joined.links.iter().zip(joined.link_states) {
+        let force = &own.force;
         for (index, end) in one.ends.iter().enumerate() {
             trials[end.structure].add_link(end, &(force * link::sign(index)));
         }

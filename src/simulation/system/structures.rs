@@ -73,7 +73,7 @@ impl Structures {
 
     /// Joints between them.
     pub fn joined<'a>(&'a self, elements: &'a [ElementStep<'a>]) -> Joined<'a> {
-        Joined { joints: &self.stepped, links: &self.links, elements }
+        Joined { joints: &self.stepped, links: &self.links, link_states: &self.link_states, elements }
     }
 
     /// Takes the states that a step of `h` \[s] has led to.
@@ -133,7 +133,7 @@ impl Structures {
         };
         let torques: Vec<_> = (0..self.scene.shafts.len()).map(torque).collect();
         self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, &torques, time);
-        let links = self.links.iter().zip(&self.link_states);
-        self.outputs.links = links.map(|(link, state)| LinkOutputs::of(link, state)).collect();
+        let links = self.link_states.iter().enumerate();
+        self.outputs.links = links.map(|(index, state)| LinkOutputs::of(&self.links, index, state)).collect();
     }
 }
