@@ -4,7 +4,7 @@
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
-use super::model_description::{Wanted, is_exported};
+use super::model_description::{Version, Wanted, is_exported};
 use super::references::{References, rate_row};
 use super::variables::{Causality, ShaftSource, Source, Variable};
 
@@ -66,9 +66,11 @@ fn member(name: &str, of_race: bool) -> Option<(&str, Member)> {
     Some((terminal, Member { variable: name.into(), name: short, kind }))
 }
 
-/// The terminals among rows, with some of the outputs; variables are arrays where these are all there.
-pub fn terminals(rows: &[Variable], arrays: bool, wanted: Wanted<'_>) -> Vec<Terminal> {
-    let references = References::of(rows, arrays);
+/// The terminals among rows in a package of a version, with some of the outputs. Arrays and accelerations are variables in packages of FMI 3.0
+/// alone; variables are arrays, where these are asked for, if they are all there.
+pub fn terminals(rows: &[Variable], version: Version, arrays: bool, wanted: Wanted<'_>) -> Vec<Terminal> {
+    let third = version == Version::V3;
+    let references = References::of(rows, third && arrays);
     let whole = references.whole_arrays(|one| rows.get(one).is_none_or(|row| is_exported(row, wanted)));
     let mut all: Vec<Terminal> = vec![];
     let mut add = |reference: usize, name: &str, of_race: bool| {
@@ -95,14 +97,14 @@ pub fn terminals(rows: &[Variable], arrays: bool, wanted: Wanted<'_>) -> Vec<Ter
             _ => {}
         }
     }
-    for (reference, row) in references.rates() {
+    for (reference, row) in references.rates().filter(|_| third) {
         add(reference, &rate_row(&rows[row]).name, matches!(rows[row].source, Source::Race(..)));
     }
     all
 }
 
-/// `terminalsAndIcons.xml` of a package of FMI 3.0. Members are matched by their names, as many as both sides have: which there are depends on
-/// how a race is driven.
+/// `terminalsAndIcons.xml` of a package. FMI 2.0.4 takes the file from 3.0 as it is: its version is that of its schema. Members are matched by
+/// their names, as many as both sides have: which there are depends on how a race is driven.
 ///
 /// # Errors
 /// Only those of writing to memory.

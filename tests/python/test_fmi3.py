@@ -1,4 +1,4 @@
-"""Packages of FMI 3.0 in FMPy: validation, and the same results as those of FMI 2.0."""
+"""Packages of FMI 3.0 in FMPy: validation, the same results as those of FMI 2.0, and terminals of both."""
 
 import os
 import shutil
@@ -109,6 +109,8 @@ def terminals(package):
     with zipfile.ZipFile(package) as archive:
         document = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
         assert "terminalsAndIcons/icon.png" in archive.namelist()
+    # That of the schema, in packages of both versions.
+    assert document.get("fmiVersion") == "3.0"
     schema = etree.XMLSchema(etree.parse(Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"))
     schema.assertValid(document)
     members = {
@@ -123,20 +125,22 @@ def terminals(package):
 def test_races_loads_and_seats_are_terminals(thrust_text, tmp_path):
     scene = tmp_path / "pose.toml"
     scene.write_text(pose_drive(thrust_text, "shaft"))
-    _, package = both(scene, tmp_path)
-    inner = terminals(package)["inner"]
-    motions = ["position", "velocity", "acceleration"]
-    expected = {f"{motion}.{axis}" for motion in motions for axis in "xyz"}
-    expected |= {f"{motion}.{axis}" for motion in ["rotation", "rotation_rate", "rotation_acceleration"] for axis in "yz"}
-    expected |= {f"{effort}.{axis}" for effort in ["force", "moment"] for axis in "xyz"} | {"speed", "speed_rate", "turned"}
-    assert set(inner) == expected
-    assert inner["force.x"] == ("inner.force.x", "outflow") and inner["position.y"] == ("inner.position.y", "signal")
-    _, package = both(ROOT / "scenes" / "shafts" / "pinion.toml", tmp_path)
-    of_shaft = terminals(package)
-    seats = [name for name in of_shaft if name.endswith(".seat")]
-    assert len(seats) >= 2 and all("displacement.y" in of_shaft[name] for name in seats)
-    assert any({"force.x", "moment.z", "displacement.x"} <= set(members) for members in of_shaft.values())
-    assert "torque" in of_shaft["shaft"] and sum(name.endswith(".inner") for name in of_shaft) >= 2
+    expected = {f"{motion}.{axis}" for motion in ["position", "velocity"] for axis in "xyz"}
+    expected |= {f"{motion}.{axis}" for motion in ["rotation", "rotation_rate"] for axis in "yz"}
+    expected |= {f"{effort}.{axis}" for effort in ["force", "moment"] for axis in "xyz"} | {"speed", "turned"}
+    # Inputs of 3.0, and derivatives of inputs in 2.0.
+    accelerations = {f"acceleration.{axis}" for axis in "xyz"} | {f"rotation_acceleration.{axis}" for axis in "yz"} | {"speed_rate"}
+    for package, more in zip(both(scene, tmp_path), [set(), accelerations]):
+        assert validate_fmu(package) == []
+        inner = terminals(package)["inner"]
+        assert set(inner) == expected | more
+        assert inner["force.x"] == ("inner.force.x", "outflow") and inner["position.y"] == ("inner.position.y", "signal")
+    for package in both(ROOT / "scenes" / "shafts" / "pinion.toml", tmp_path):
+        of_shaft = terminals(package)
+        seats = [name for name in of_shaft if name.endswith(".seat")]
+        assert len(seats) >= 2 and all("displacement.y" in of_shaft[name] for name in seats)
+        assert any({"force.x", "moment.z", "displacement.x"} <= set(members) for members in of_shaft.values())
+        assert "torque" in of_shaft["shaft"] and sum(name.endswith(".inner") for name in of_shaft) >= 2
 
 
 def test_an_importer_sets_inputs_within_steps(thrust_text, tmp_path):
@@ -190,8 +194,10 @@ def validated(scene, directory):
     (folder / "arrays.toml").write_text(with_arrays((ROOT / scene).read_text()))
     arrays = folder / "arrays.fmu"
     roulement("fmu", folder / "arrays.toml", "-o", arrays, "--fmi", 3)
-    terminals(arrays)
-    return [validate_fmu(package) for package in [*both(ROOT / scene, directory), str(arrays)]]
+    packages = [*both(ROOT / scene, directory), str(arrays)]
+    for package in packages:
+        terminals(package)
+    return [validate_fmu(package) for package in packages]
 
 
 @pytest.mark.skipif("ROULEMENT_LONG" not in os.environ, reason="long: scripts/soak")

@@ -119,7 +119,7 @@ struct Content<'a> {
     /// Version of the standard.
     version: Version,
     description: ModelDescription,
-    /// Its terminals, of packages of FMI 3.0.
+    /// Its terminals.
     terminals: String,
     /// The text that its library reads.
     source: &'a str,
@@ -144,7 +144,9 @@ pub fn write_fmu(
     let machine = Machine::new(scene)?;
     let variables = MachineVariables::new(&machine);
     let wanted = wanted(columns, variables.rows())?;
-    let terminals = terminals::render(&terminals::terminals(variables.rows(), scene.has_arrays(), &wanted))?;
+    let terminals =
+        terminals::terminals(variables.rows(), edition.version, scene.has_arrays(), &wanted);
+    let terminals = terminals::render(&terminals)?;
     let description = render_as(edition, &machine, name, &wanted)?;
     let page = match &machine {
         Machine::Bearing(bearing) => documentation::page(bearing.scene(), &wanted),
@@ -220,14 +222,13 @@ fn write(
         add(&format!("binaries/{folder}/{identifier}.{ending}"), library)?;
     }
     add(&format!("resources/{SCENE_FILE}"), content.source.as_bytes())?;
-    let icon = match version {
-        Version::V2 => "model.png",
-        Version::V3 => "terminalsAndIcons/icon.png",
-    };
-    add(icon, include_bytes!("../../../assets/model.png"))?;
-    if version == Version::V3 {
-        add("terminalsAndIcons/terminalsAndIcons.xml", content.terminals.as_bytes())?;
+    let icon = include_bytes!("../../../assets/model.png");
+    if version == Version::V2 {
+        // Where importers look that know nothing of 2.0.4.
+        add("model.png", icon)?;
     }
+    add("terminalsAndIcons/icon.png", icon)?;
+    add("terminalsAndIcons/terminalsAndIcons.xml", content.terminals.as_bytes())?;
     add("documentation/licenses/license.txt", include_bytes!("../../../assets/licenses.txt"))?;
     add("documentation/index.html", content.page.as_bytes())?;
     let bytes = zip.finish()?.into_inner();
