@@ -27,7 +27,7 @@ KEPT = ROOT / "examples" / "reference"
 PROGRAM = os.environ.get("ROULEMENT_BIN", ROOT / "target/release/roulement")
 VERSIONS = {"2.0": ("2", "linux64"), "3.0": ("3", "x86_64-linux")}
 RELATIVE, ABSOLUTE = 1e-4, 1e-6  # band about the reference: of the largest value of a variable [-], and beside that [its unit]
-MEMBERS = ["modelDescription.xml", "resources/scene.toml", "documentation/index.html", "documentation/licenses/license.txt"]
+MEMBERS = ["modelDescription.xml", "resources/scene.toml", "terminalsAndIcons/terminalsAndIcons.xml", "documentation/index.html", "documentation/licenses/license.txt"]
 
 RPM = math.pi / 30  # [rad/s]
 
