@@ -30,6 +30,24 @@ Path("cases.csv").write_text("friction.ball_race\n0.05\n0.1\n")
 table = roulement.sweep.run("cases.csv", scene, "sweep")
 assert set(table["status"]) == {"done"} and table["friction_power.mean"][0] < table["friction_power.mean"][1]
 assert subprocess.run([sys.executable, "-m", "roulement.sweep", "--help"], capture_output=True).returncode == 0
+# The program: on the path, of the same version, with the libraries of all platforms that the wheel has, and no compiler.
+command = Path(sys.executable).with_name("roulement")
+for start in ([command], [sys.executable, "-m", "roulement"]):
+    version = subprocess.run([*start, "--version"], capture_output=True, text=True, check=True).stdout
+    assert version.startswith(f"roulement {roulement.__version__} "), version
+subprocess.run([command, "fmu", "thrust.toml", "-o", "all.fmu", "--name", "trial", "--all-platforms"], check=True, stdout=subprocess.DEVNULL)
+
+
+def binaries(archive):
+    with zipfile.ZipFile(archive) as of:
+        return {name: of.read(name) for name in of.namelist() if name.startswith("binaries/")}
+
+
+assert binaries("all.fmu") == binaries(package), "the program packs what Python packs"
+subprocess.run([command, "run", "thrust.toml", "-o", "results"], check=True, stdout=subprocess.DEVNULL)
+subprocess.run([command, "report", "results", "-o", "report.html"], check=True, stdout=subprocess.DEVNULL)
+assert "</html>" in Path("report.html").read_text()[-100:]
+print(f"the program has version {roulement.__version__}, makes packages, runs and pages")
 guid = re.search('guid="([^"]*)"', roulement.Scene.load("thrust.toml").describe("thrust"))[1]
 Path("found.txt").write_text(f"guid {guid}\n")
 print("sweep done")

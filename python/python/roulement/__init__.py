@@ -10,6 +10,7 @@ All numbers are SI, angles in radians. Results have the same bits as those of th
 """
 
 import importlib
+import importlib.metadata
 
 from . import catalogue, coupling, load_cases, shaft, vibration
 from .contacts import LAWS, contact
@@ -54,4 +55,6 @@ def __getattr__(name):
     # Not before they are used: `python -m roulement.sweep` runs one of them itself.
     if name in ("design", "sweep"):
         return importlib.import_module(f".{name}", __name__)
+    if name == "__version__":
+        return importlib.metadata.version(__name__)
     raise AttributeError(f"module {__name__} has no attribute {name}")

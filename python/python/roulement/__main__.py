@@ -1,0 +1,5 @@
+"""`python -m roulement` is the program `roulement`."""
+
+from .program import main
+
+main()
