@@ -38,7 +38,7 @@ use roulement::interface::model_description::{Edition, Version, all, render_as};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement_cli::kinds::{Kind, other_kind};
-use roulement_cli::package::{library_beside_executable, name_of, write_fmu};
+use roulement_cli::package::{libraries_beside, library_beside_executable, name_of, write_fmu};
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]
@@ -86,6 +86,9 @@ enum Command {
         /// Shared library to pack, once per platform; the one built beside this program if not given.
         #[arg(long)]
         library: Vec<PathBuf>,
+        /// Pack the libraries of all platforms that lie beside this program, as they do in the Python wheels.
+        #[arg(long, conflicts_with = "library")]
+        all_platforms: bool,
         /// Name of the model, and of its library; that of the package's file if not given.
         #[arg(long)]
         name: Option<String>,
@@ -215,8 +218,23 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Modes(options) => modes::run(&options)?,
         Command::Rating(options) => rating::run(&options)?,
         Command::Cage(options) => cage::run(&options)?,
-        Command::Fmu { scene, output, library, name, columns, fmi, author, copyright, date } => {
-            let libraries = if library.is_empty() { vec![library_beside_executable()?] } else { library };
+        Command::Fmu {
+            scene,
+            output,
+            library,
+            all_platforms,
+            name,
+            columns,
+            fmi,
+            author,
+            copyright,
+            date,
+        } => {
+            let libraries = match all_platforms {
+                true => libraries_beside(&std::env::current_exe()?)?,
+                false if library.is_empty() => vec![library_beside_executable()?],
+                false => library,
+            };
             let name = name.unwrap_or_else(|| name_of(&output));
             let edition = Edition { version: fmi, author, copyright, date };
             write_fmu(&load_for(&scene, true)?, &edition, &name, &columns, &libraries, &output)?;

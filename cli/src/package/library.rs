@@ -6,7 +6,8 @@ use roulement::interface::model_description::Version;
 
 use object::{Architecture, BinaryFormat, FileKind, Object, ObjectKind, ObjectSegment};
 
-/// A platform that packages know (FMI 2.0.4, section 2.3; FMI 3.0, section 2.5.1.4); all are 64-bit x86.
+/// A platform that packages know (FMI 2.0.4, section 2.3; FMI 3.0, section 2.5.1.4). FMI 2.0 names no other machine than x86: folders for these are
+/// those that importers look into (FMPy, fmi-rs).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Platform {
     /// Folder below `binaries`.
@@ -16,18 +17,56 @@ pub struct Platform {
     /// Ending of its libraries.
     pub ending: &'static str,
     format: BinaryFormat,
+    machine: Architecture,
 }
 
-const PLATFORMS: [Platform; 3] = [
-    Platform { folder: "linux64", folder3: "x86_64-linux", ending: "so", format: BinaryFormat::Elf },
-    Platform { folder: "win64", folder3: "x86_64-windows", ending: "dll", format: BinaryFormat::Pe },
-    Platform { folder: "darwin64", folder3: "x86_64-darwin", ending: "dylib", format: BinaryFormat::MachO },
+/// Folders of both versions, ending, kind of file, machine.
+const fn platform(
+    [folder, folder3, ending]: [&'static str; 3],
+    format: BinaryFormat,
+    machine: Architecture,
+) -> Platform {
+    Platform { folder, folder3, ending, format, machine }
+}
+
+const PLATFORMS: [Platform; 5] = [
+    platform(["linux64", "x86_64-linux", "so"], BinaryFormat::Elf, Architecture::X86_64),
+    platform(["win64", "x86_64-windows", "dll"], BinaryFormat::Pe, Architecture::X86_64),
+    platform(["darwin64", "x86_64-darwin", "dylib"], BinaryFormat::MachO, Architecture::X86_64),
+    platform(["aarch64-linux", "aarch64-linux", "so"], BinaryFormat::Elf, Architecture::Aarch64),
+    platform(["aarch64-darwin", "aarch64-darwin", "dylib"], BinaryFormat::MachO, Architecture::Aarch64),
 ];
 
-/// Platform of a library by the ending of its name.
-pub fn platform(library: &Path) -> Option<Platform> {
-    let ending = library.extension().unwrap_or_default();
-    PLATFORMS.into_iter().find(|platform| ending == platform.ending)
+/// Platforms whose libraries end as a file's name does.
+pub struct Candidates(Vec<Platform>);
+
+impl Candidates {
+    /// Those of a file; none if no platform has such libraries.
+    pub fn of(library: &Path) -> Option<Self> {
+        let ending = library.extension().unwrap_or_default();
+        let found: Vec<_> = PLATFORMS.into_iter().filter(|platform| ending == platform.ending).collect();
+        (!found.is_empty()).then_some(Self(found))
+    }
+
+    /// Their folders, in words.
+    pub fn folders(&self) -> String {
+        self.0.iter().map(|platform| platform.folder).collect::<Vec<_>>().join(" or ")
+    }
+
+    /// Kind of library that one of them loads, in words.
+    pub fn wanted(&self) -> String {
+        let machines: Vec<_> = self.0.iter().map(|platform| machine_name(platform.machine, 64)).collect();
+        format!("a shared library, {} for {}", format_name(self.0[0].format), machines.join(" or "))
+    }
+
+    /// The one whose loader loads a library.
+    ///
+    /// # Errors
+    /// Kind of the file if there is none, in words.
+    pub fn loading(&self, library: &[u8]) -> Result<Platform, String> {
+        let found = kind(library)?;
+        self.0.iter().copied().find(|platform| platform.wanted() == found).ok_or(found)
+    }
 }
 
 fn format_name(format: BinaryFormat) -> String {
@@ -42,6 +81,7 @@ fn format_name(format: BinaryFormat) -> String {
 fn machine_name(architecture: Architecture, bits: u32) -> String {
     match architecture {
         Architecture::X86_64 => "x86-64".into(),
+        Architecture::Aarch64 if bits == 64 => "aarch64".into(),
         Architecture::Unknown => format!("an unknown machine of {bits} bits"),
         other => format!("{other:?} of {bits} bits"),
     }
@@ -57,45 +97,42 @@ impl Platform {
     }
 
     /// Kind of library that its loader loads, in words.
-    pub fn wanted(&self) -> String {
-        format!("a shared library, {} for x86-64", format_name(self.format))
+    fn wanted(&self) -> String {
+        format!("a shared library, {} for {}", format_name(self.format), machine_name(self.machine, 64))
     }
+}
 
-    /// Checks that a library is one that this platform's loader loads.
-    ///
-    /// # Errors
-    /// Kind of the file if it is another one, in words.
-    pub fn check(&self, library: &[u8]) -> Result<(), String> {
-        match FileKind::parse(library) {
-            Ok(FileKind::MachOFat32 | FileKind::MachOFat64) => {
-                return Err("a universal file for several machines".into());
-            }
-            Err(_) => return Err("no library of any system, or cut off".into()),
-            Ok(_) => {}
+/// Kind of a whole file, in words.
+///
+/// # Errors
+/// What it is if nothing loads it, or why it is not whole.
+fn kind(library: &[u8]) -> Result<String, String> {
+    match FileKind::parse(library) {
+        Ok(FileKind::MachOFat32 | FileKind::MachOFat64) => {
+            return Err("a universal file for several machines".into());
         }
-        let file = object::File::parse(library).map_err(|why| format!("cut off or damaged ({why})"))?;
-        let bits = if file.is_64() { 64 } else { 32 };
-        // Programs of Linux that can be loaded anywhere say that they are libraries, but name who loads them.
-        let program = file.section_by_name_bytes(b".interp").is_some();
-        let kind = match file.kind() {
-            ObjectKind::Dynamic if !program => "a shared library",
-            ObjectKind::Dynamic | ObjectKind::Executable => "a program",
-            ObjectKind::Relocatable => "an object file",
-            _ => "neither library nor program",
-        };
-        let found =
-            format!("{kind}, {} for {}", format_name(file.format()), machine_name(file.architecture(), bits));
-        if found != self.wanted() {
-            return Err(found);
-        }
-        let ends = file.segments().map(|segment| segment.file_range()).map(|(at, n)| at.saturating_add(n));
-        match ends.max() {
-            None | Some(0) => Err("cut off or damaged (nothing to load)".into()),
-            Some(end) if end > library.len() as u64 => {
-                Err(format!("cut off: {} of {end} bytes", library.len()))
-            }
-            Some(_) => Ok(()),
-        }
+        Err(_) => return Err("no library of any system, or cut off".into()),
+        Ok(_) => {}
+    }
+    let file = object::File::parse(library).map_err(|why| format!("cut off or damaged ({why})"))?;
+    let bits = if file.is_64() { 64 } else { 32 };
+    // Programs of Linux that can be loaded anywhere say that they are libraries, but name who loads them.
+    let program = file.section_by_name_bytes(b".interp").is_some();
+    let kind = match file.kind() {
+        ObjectKind::Dynamic if !program => "a shared library",
+        ObjectKind::Dynamic | ObjectKind::Executable => "a program",
+        ObjectKind::Relocatable => "an object file",
+        _ => "neither library nor program",
+    };
+    let ends = file.segments().map(|segment| segment.file_range()).map(|(at, n)| at.saturating_add(n));
+    match ends.max() {
+        None | Some(0) if kind == "a shared library" => Err("cut off or damaged (nothing to load)".into()),
+        Some(end) if end > library.len() as u64 => Err(format!("cut off: {} of {end} bytes", library.len())),
+        _ => Ok(format!(
+            "{kind}, {} for {}",
+            format_name(file.format()),
+            machine_name(file.architecture(), bits)
+        )),
     }
 }
 
@@ -105,6 +142,7 @@ mod tests {
 
     const X86_64: u16 = 62;
     const AARCH64: u16 = 183;
+    const RISCV: u16 = 243;
     /// Machine number of a PE file.
     const AMD64: u16 = 0x8664;
     const DLL: u16 = 0x2022;
@@ -187,8 +225,8 @@ mod tests {
         )
     }
 
-    fn check(file: &str, library: &[u8]) -> Result<(), String> {
-        platform(Path::new(file)).unwrap_or(PLATFORMS[0]).check(library)
+    fn check(file: &str, library: &[u8]) -> Result<&'static str, String> {
+        Candidates::of(Path::new(file)).unwrap().loading(library).map(|platform| platform.folder)
     }
 
     #[test]
@@ -196,35 +234,36 @@ mod tests {
         const AMD64_MAC: u32 = 0x0100_0007;
         const ARM64_MAC: u32 = 0x0100_000c;
         for (name, library, found) in [
-            ("a.so", elf(64, 3, X86_64), None),
-            ("a.dll", pe(AMD64, DLL, 64), None),
-            ("a.dylib", macho(AMD64_MAC, 6), None),
+            ("a.so", elf(64, 3, X86_64), Ok("linux64")),
+            ("a.dll", pe(AMD64, DLL, 64), Ok("win64")),
+            ("a.dylib", macho(AMD64_MAC, 6), Ok("darwin64")),
+            ("a.so", elf(64, 3, AARCH64), Ok("aarch64-linux")),
+            ("a.dylib", macho(ARM64_MAC, 6), Ok("aarch64-darwin")),
             // another machine
-            ("a.so", elf(64, 3, AARCH64), Some("a shared library, ELF for Aarch64 of 64 bits")),
-            ("a.so", elf(64, 3, 0xfefe), Some("a shared library, ELF for an unknown machine of 64 bits")),
-            ("a.dll", pe(0xaa64, DLL, 64), Some("a shared library, PE for Aarch64 of 64 bits")),
-            ("a.dylib", macho(ARM64_MAC, 6), Some("a shared library, Mach-O for Aarch64 of 64 bits")),
+            ("a.so", elf(64, 3, RISCV), Err("a shared library, ELF for Riscv64 of 64 bits")),
+            ("a.so", elf(64, 3, 0xfefe), Err("a shared library, ELF for an unknown machine of 64 bits")),
+            ("a.dll", pe(0xaa64, DLL, 64), Err("a shared library, PE for aarch64")),
             // 32 bits
-            ("a.so", elf(32, 3, 3), Some("a shared library, ELF for I386 of 32 bits")),
-            ("a.so", elf(32, 3, X86_64), Some("a shared library, ELF for X86_64_X32 of 32 bits")),
-            ("a.dll", pe(0x14c, DLL, 32), Some("a shared library, PE for I386 of 32 bits")),
+            ("a.so", elf(32, 3, 3), Err("a shared library, ELF for I386 of 32 bits")),
+            ("a.so", elf(32, 3, X86_64), Err("a shared library, ELF for X86_64_X32 of 32 bits")),
+            ("a.dll", pe(0x14c, DLL, 32), Err("a shared library, PE for I386 of 32 bits")),
             // another system
-            ("a.so", pe(AMD64, DLL, 64), Some("a shared library, PE for x86-64")),
-            ("a.dll", elf(64, 3, X86_64), Some("a shared library, ELF for x86-64")),
-            ("a.dylib", elf(64, 3, X86_64), Some("a shared library, ELF for x86-64")),
+            ("a.so", pe(AMD64, DLL, 64), Err("a shared library, PE for x86-64")),
+            ("a.dll", elf(64, 3, X86_64), Err("a shared library, ELF for x86-64")),
+            ("a.dylib", elf(64, 3, X86_64), Err("a shared library, ELF for x86-64")),
             (
                 "a.dylib",
                 bytes(64, &[(0, b"\xca\xfe\xba\xbe\0\0\0\x02")]),
-                Some("a universal file for several machines"),
+                Err("a universal file for several machines"),
             ),
             // no library
-            ("a.so", elf(64, 2, X86_64), Some("a program, ELF for x86-64")),
-            ("a.so", elf(64, 1, X86_64), Some("an object file, ELF for x86-64")),
-            ("a.dll", pe(AMD64, 0x22, 64), Some("a program, PE for x86-64")),
-            ("a.so", b"#!/bin/sh\necho no library\n".to_vec(), Some("no library of any system, or cut off")),
-            ("a.so", vec![0; 1000], Some("no library of any system, or cut off")),
+            ("a.so", elf(64, 2, X86_64), Err("a program, ELF for x86-64")),
+            ("a.so", elf(64, 1, X86_64), Err("an object file, ELF for x86-64")),
+            ("a.dll", pe(AMD64, 0x22, 64), Err("a program, PE for x86-64")),
+            ("a.so", b"#!/bin/sh\necho no library\n".to_vec(), Err("no library of any system, or cut off")),
+            ("a.so", vec![0; 1000], Err("no library of any system, or cut off")),
         ] {
-            assert_eq!(check(name, &library), found.map_or(Ok(()), |found| Err(found.to_string())), "{name}");
+            assert_eq!(check(name, &library), found.map_err(String::from), "{name}");
         }
     }
 
@@ -241,7 +280,7 @@ mod tests {
         for (name, library) in
             [("a.so", elf(64, 3, X86_64)), ("a.dll", pe(AMD64, DLL, 64)), ("a.dylib", macho(0x0100_0007, 6))]
         {
-            assert_eq!(check(name, &library), Ok(()));
+            assert!(check(name, &library).is_ok());
             for length in 0..library.len() {
                 let why = check(name, &library[..length]).expect_err(&format!("{name} cut at {length}"));
                 assert!(why.contains("cut off"), "{length}: {why}");
@@ -250,11 +289,21 @@ mod tests {
     }
 
     #[test]
-    fn endings_name_the_platform() {
-        let folder = |file: &str| platform(Path::new(file)).map(|platform| platform.folder);
-        assert_eq!(folder("x/libroulement.so"), Some("linux64"));
-        assert_eq!(folder("roulement.dll"), Some("win64"));
-        assert_eq!(folder("libroulement.dylib"), Some("darwin64"));
-        assert_eq!((folder("roulement.lib"), folder("so")), (None, None));
+    fn endings_name_the_platforms() {
+        let folders = |file: &str| Candidates::of(Path::new(file)).map(|found| found.folders());
+        assert_eq!(folders("x/libroulement.so").as_deref(), Some("linux64 or aarch64-linux"));
+        assert_eq!(folders("roulement.dll").as_deref(), Some("win64"));
+        assert_eq!(folders("libroulement.dylib").as_deref(), Some("darwin64 or aarch64-darwin"));
+        assert_eq!((folders("roulement.lib"), folders("so")), (None, None));
+    }
+
+    #[test]
+    fn every_platform_has_a_folder_of_its_own_in_both_versions() {
+        for version in [Version::V2, Version::V3] {
+            let mut folders: Vec<_> = PLATFORMS.iter().map(|platform| platform.folder_of(version)).collect();
+            folders.sort_unstable();
+            folders.dedup();
+            assert_eq!(folders.len(), PLATFORMS.len());
+        }
     }
 }

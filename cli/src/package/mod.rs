@@ -9,8 +9,8 @@ use std::fs;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
-pub use beside::{library_beside, library_beside_executable};
-use library::{Platform, platform};
+pub use beside::{libraries_beside, library_beside, library_beside_executable};
+use library::{Candidates, Platform};
 use thiserror::Error;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
@@ -68,11 +68,11 @@ pub enum PackageError {
     Library {
         /// File.
         path: String,
-        /// Folder of the platform.
-        folder: &'static str,
+        /// Folders of the platforms that have such libraries.
+        folder: String,
         /// Kind of the file.
         found: String,
-        /// Kind of file that the platform loads.
+        /// Kind of file that they load.
         wanted: String,
     },
     /// No output is chosen by a name.
@@ -89,15 +89,15 @@ pub enum PackageError {
 /// If it cannot be read, its ending is of no platform, or it is not what its ending says.
 fn read_library(path: &Path) -> Result<(Platform, Vec<u8>), PackageError> {
     let name = || path.display().to_string();
-    let platform = platform(path).ok_or_else(|| PackageError::Platform(name()))?;
+    let platforms = Candidates::of(path).ok_or_else(|| PackageError::Platform(name()))?;
     let library = regular::bytes(path, LARGEST_BINARY).map_err(file_error("cannot read", path))?;
     let refused = |found| PackageError::Library {
         path: name(),
-        folder: platform.folder,
+        folder: platforms.folders(),
         found,
-        wanted: platform.wanted(),
+        wanted: platforms.wanted(),
     };
-    platform.check(&library).map_err(refused)?;
+    let platform = platforms.loading(&library).map_err(refused)?;
     let mut library = strip::stripped(library);
     paths::hide(&mut library);
     Ok((platform, library))
@@ -144,8 +144,7 @@ pub fn write_fmu(
     let machine = Machine::new(scene)?;
     let variables = MachineVariables::new(&machine);
     let wanted = wanted(columns, variables.rows())?;
-    let terminals =
-        terminals::terminals(variables.rows(), edition.version, scene.has_arrays(), &wanted);
+    let terminals = terminals::terminals(variables.rows(), edition.version, scene.has_arrays(), &wanted);
     let terminals = terminals::render(&terminals)?;
     let description = render_as(edition, &machine, name, &wanted)?;
     let page = match &machine {

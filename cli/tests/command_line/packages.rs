@@ -88,6 +88,29 @@ fn readers_of_libraries_have_no_complaint() {
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
 }
 
+/// What a wheel has: the program with libraries of several platforms beside it.
+#[test]
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn libraries_of_all_platforms_beside_the_program_are_packed() {
+    let scratch = Scratch::new("beside");
+    let program = scratch.path("roulement");
+    fs::copy(env!("CARGO_BIN_EXE_roulement"), &program).unwrap();
+    fs::write(scratch.path(LIBRARY), library(&scratch, "a.fmu")).unwrap();
+    fs::write(scratch.path("libroulement-aarch64.so"), refusals::elf(183)).unwrap();
+    fs::write(scratch.path("notes.txt"), "no library").unwrap();
+    let package = scratch.path("all.fmu");
+    let output = Command::new(&program)
+        .args(["fmu", &scene("thrust"), "-o", &package, "--all-platforms"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let archive = fs::read(&package).unwrap();
+    for name in ["binaries/linux64/all.so", "binaries/aarch64-linux/all.so"] {
+        assert!(memchr::memmem::find(&archive, name.as_bytes()).is_some(), "{name}");
+    }
+    assert!(system::unzipped(&package, "binaries/linux64/all.so").len() > 1_000_000);
+}
+
 #[test]
 fn invariant_the_same_scene_and_library_give_the_same_bytes() {
     let scratch = Scratch::new("same");

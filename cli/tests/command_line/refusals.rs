@@ -149,9 +149,9 @@ fn only_libraries_of_the_platform_are_packed() {
         assert_eq!(output.status.success(), Path::new(&package).exists());
         String::from_utf8(output.stderr).unwrap()
     };
-    std::fs::write(&library, elf(183)).unwrap();
+    std::fs::write(&library, elf(243)).unwrap();
     let message = pack(&[&library]);
-    for part in ["a.so", "linux64", "Aarch64", "x86-64"] {
+    for part in ["a.so", "linux64 or aarch64-linux", "Riscv64", "x86-64 or aarch64"] {
         assert!(message.contains(part), "{message}");
     }
     std::fs::write(&library, elf(62)).unwrap();
@@ -159,6 +159,12 @@ fn only_libraries_of_the_platform_are_packed() {
     let message = pack(&[&library, &other]);
     assert!(message.contains("two libraries for linux64"), "{message}");
     assert_eq!(pack(&[&library]), "");
+    // One for each machine of a system.
+    std::fs::write(&other, elf(183)).unwrap();
+    assert_eq!(pack(&[&library, &other]), "");
+    for folder in ["linux64", "aarch64-linux"] {
+        assert_eq!(system::unzipped(&package, &format!("binaries/{folder}/x.so")).len(), 120);
+    }
 }
 
 /// What the program says of input that it must refuse at once: one that waits is ended, and fails the test.
