@@ -44,7 +44,7 @@ def test_the_source_distribution_has_all_that_is_built(tmp_path, monkeypatch):
     with tarfile.open(archive) as packed:
         names = {name.split("/", 1)[1] for name in packed.getnames()}
         description = packed.extractfile(f"roulement-{roulement.__version__}/pyproject.toml").read().decode()
-    assert {"PKG-INFO", "pyproject.toml", "Cargo.lock", "src/lib.rs", "cli/src/main.rs", "python/src/lib.rs", "python/python/roulement/__init__.py"} <= names
+    assert {"PKG-INFO", "pyproject.toml", "Cargo.lock", "src/lib.rs", "cli/src/main.rs", "python/src/lib.rs", "python/README.md", "python/python/roulement/__init__.py"} <= names
     assert 'manifest-path = "python/Cargo.toml"' in description and 'backend-path = ["python"]' in description
     # What the sources take into themselves lies in it.
     for source in [name for name in names if name.endswith(".rs") and name.startswith(("src/", "cli/src/", "python/src/"))]:

@@ -7,7 +7,7 @@ use roulement::interface::model_description::Version;
 use object::{Architecture, BinaryFormat, FileKind, Object, ObjectKind, ObjectSegment};
 
 /// A platform that packages know (FMI 2.0.4, section 2.3; FMI 3.0, section 2.5.1.4). FMI 2.0 names no other machine than x86: folders for these are
-/// those that importers look into (FMPy, fmi-rs).
+/// those that fmi-rs looks into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Platform {
     /// Folder below `binaries`.
