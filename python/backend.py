@@ -31,7 +31,7 @@ NAME = {"win32": "roulement.dll", "darwin": "libroulement.dylib"}.get(sys.platfo
 PROGRAM = "roulement.exe" if sys.platform == "win32" else "roulement"
 # What the source distribution has: of the folders all that git knows of, or all where there is no git.
 SOURCES = ["Cargo.toml", "Cargo.lock", "LICENSE", "README.md", "build.rs", "assets", "benches", "cli", "docs/scene.md", "docs/scene.schema.json", "examples", "python", "report/bundle",
-           "scenes", "src"]
+           "scenes", "src", "tests"]
 
 
 def _profile():
