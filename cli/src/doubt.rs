@@ -7,6 +7,8 @@ use roulement::catalogue::Bearing;
 use roulement::simulation::Simulation;
 use thiserror::Error;
 
+use crate::duty::rated::{speed, torque_of_losses};
+use crate::fits::WITHIN;
 use crate::sweep::all::on_threads;
 
 /// [-] error in both load ratings beyond that of the best candidate up to which another one is likely, too: a ball more or less.
@@ -42,22 +44,13 @@ const QUANTITIES: [Quantity; 6] = [
         Some(life * 1e6 * std::f64::consts::TAU / speed(of) / 3600.0).filter(|life| life.is_finite())
     }),
     ("static safety", "", |of| Some(of.outputs().life?.static_safety)),
-    // What turns it brings the losses: the torque of the first instant is that of balls that have not found their way yet.
-    ("torque", "N mm", |of| {
-        Some(1e3 * of.outputs().losses.total() / speed(of)).filter(|torque| torque.is_finite())
-    }),
+    ("torque", "N mm", |of| Some(1e3 * torque_of_losses(of)).filter(|_| speed(of) > 0.0)),
     ("losses", "W", |of| Some(of.outputs().losses.total())),
     ("largest ball load", "N", |of| largest(of, |ball| ball.inner.load)),
     ("peak pressure", "MPa", |of| {
         largest(of, |ball| 1e-6 * ball.inner.peak_pressure.max(ball.outer.peak_pressure))
     }),
 ];
-
-/// [rad/s] speed of the races against each other.
-fn speed(of: &Simulation) -> f64 {
-    let outputs = of.outputs();
-    (outputs.inner.twist.angular_velocity - outputs.outer.twist.angular_velocity).norm()
-}
 
 fn largest(of: &Simulation, get: impl Fn(&roulement::effects::reports::BallOutput) -> f64) -> Option<f64> {
     of.outputs().balls.iter().map(get).reduce(f64::max)
@@ -165,6 +158,15 @@ fn cases(
         if index + 1 != candidate && other.error() <= best + LIKELY {
             let scene = Scene::edited(&bearing.scene(index + 1)?, pairs(set))?;
             cases.push(Case { input: "balls", value: other.to_string(), scene });
+        }
+    }
+    let fits = base.effects.growth.section.as_ref().filter(|growth| {
+        [&growth.shaft, &growth.housing].into_iter().flatten().any(|seat| seat.fit.is_some())
+    });
+    if let Some(growth) = fits {
+        for (name, _) in WITHIN.into_iter().filter(|(_, within)| *within != growth.fits) {
+            let scene = Scene::edited(&base.source, [("growth.fits", format!("\"{name}\"").as_str())])?;
+            cases.push(Case { input: "growth.fits", value: name.to_owned(), scene });
         }
     }
     let mut push = |input: &'static str, values: [f64; 2], own: f64, shown: &dyn Fn(f64) -> String| {

@@ -19,6 +19,7 @@ use roulement_cli::cost::{Choice, report, study_of};
 use roulement_cli::duty::DutyRating;
 use roulement_cli::duty::loads::Duty;
 use roulement_cli::duty::say::with_duty;
+use roulement_cli::fits::{Fits, with_fits};
 use roulement_cli::package::{library_beside as built_with, write_fmu};
 use roulement_cli::report::json;
 use roulement_cli::sweep::all::threads;
@@ -94,6 +95,8 @@ impl Scene {
         py.detach(|| {
             let scene = self.resolved()?;
             let duty = DutyRating::of_scene(&scene, threads()).map_err(runtime)?;
+            let fits = Fits::of(&scene, threads()).map_err(runtime)?;
+            let rated = |report| with_fits(with_duty(report, duty.as_ref()), fits.as_ref()).to_string();
             let scene = match scene {
                 MachineScene::Bearing(scene) => scene,
                 MachineScene::Shaft(_) if !by_friction => {
@@ -104,7 +107,7 @@ impl Scene {
                 MachineScene::Shaft(scene) => {
                     let found =
                         MachineEquilibrium::of(&scene, 0.0, largest_speed(&scene)).map_err(runtime)?;
-                    return Ok(with_duty(found.to_json(), duty.as_ref()).to_string());
+                    return Ok(rated(found.to_json()));
                 }
             };
             let model = Model::new(&scene).map_err(runtime)?;
@@ -112,20 +115,24 @@ impl Scene {
             let solution = equilibrium::solve(&model, &input).map_err(runtime)?;
             let mut report = solution.to_json();
             report["peak_pressure"] = solution.peak_pressure(&model).into();
-            Ok(with_duty(report, duty.as_ref()).to_string())
+            Ok(rated(report))
         })
     }
 
-    /// Rating under the loads of a table, or over its own duty, as JSON.
-    fn rating(&self, py: Python<'_>, loads: Option<PathBuf>) -> PyResult<String> {
+    /// Rating under the loads of a table, or over its own duty, in balance or run, as JSON.
+    fn rating(&self, py: Python<'_>, loads: Option<PathBuf>, runs: bool) -> PyResult<String> {
         py.detach(|| {
             let scene = self.resolved()?;
             let duty = match &loads {
                 Some(path) => Duty::of_table(path, &scene),
                 None => Duty::of_scene(&scene),
             };
-            let rating = DutyRating::of(&duty.map_err(value)?, threads()).map_err(runtime)?;
-            Ok(rating.to_json().to_string())
+            let duty = duty.map_err(value)?;
+            let rating = match runs {
+                true => DutyRating::in_runs(&duty, threads()),
+                false => DutyRating::of(&duty, threads()),
+            };
+            Ok(rating.map_err(runtime)?.to_json().to_string())
         })
     }
 

@@ -100,6 +100,9 @@ export function plotsSection(runs, current) {
     h('h3', {}, `Any of the ${all.length} columns`), h('div', { class: 'row' }, input, h('datalist', { id: 'columns' }, all.map(name => h('option', { value: name }))), h('button', { type: 'button', onclick: add }, 'Plot')), own);
 }
 
+/** [px] of a plot, with the name of its time axis. */
+const HEIGHT = 228;
+
 function drop(holder) {
   for (const entry of [...plots]) if (holder.contains(entry.holder)) { entry.plot?.destroy(); plots.delete(entry); }
   holder.replaceChildren();
@@ -185,12 +188,13 @@ function make(entry) {
   entry.note.hidden = !entry.range;
   const axis = { stroke: css('--ink-2'), grid: { stroke: css('--grid'), width: 1 }, ticks: { stroke: css('--grid') }, font: '12px system-ui' };
   const options = {
-    width: Math.max(entry.body.clientWidth, 240), height: 210,
+    width: Math.max(entry.body.clientWidth, 240), height: HEIGHT,
     // Cursors follow the clock, which follows the pointer.
     cursor: { y: false, points: { size: 6 }, drag: { x: true, y: false, setScale: true } },
     legend: { show: false },
     scales: { x: { time: false, range: (u, low, high) => (zoom ?? [low, high]) }, y: { range: (u, low, high) => (entry.range && !entry.whole && !zoom ? range(u, ...entry.range) : range(u, low, high)) } },
-    axes: [{ ...axis, size: 34, values: (u, values) => values.map(v => digits(v, 5).replace(/\.?0+$/, '') || '0') }, { ...axis, size: 66, values: (u, values) => values.map(v => label(v, values)) }],
+    axes: [{ ...axis, size: 34, label: 'time [ms]', labelSize: 18, labelGap: 0, labelFont: '12px system-ui', values: (u, values) => values.map(v => label(v, values)) },
+      { ...axis, size: (u, values) => Math.max(66, 20 + 7 * Math.max(0, ...(values ?? []).map(text => text.length))), values: (u, values) => values.map(v => label(v, values)) }],
     series: [{}, ...order.map((curve, i) => ({ label: curve.word, stroke: () => strokeOf(curve, i, order.length), width: 1.5, dash: curve.dash ? [6, 3 * curve.dash] : undefined, points: { show: false }, spanGaps: true, show: !entry.hidden.has(i) }))],
     hooks: {
       setCursor: [u => { if (entry.pointed && u.cursor.left >= 0) clock.seek(u.posToVal(u.cursor.left, 'x') / ms); }],
@@ -219,7 +223,7 @@ function make(entry) {
 }
 
 /** Digits that tell the ticks apart. */
-function label(value, values) {
+export function label(value, values) {
   const step = values.length > 1 ? Math.abs(values[1] - values[0]) : Math.abs(value) || 1;
   const decimals = Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 8);
   return Math.abs(value) >= 1e6 || (value !== 0 && step < 1e-6) ? digits(value, 3) : value.toFixed(decimals).replace('-', '\u2212');
@@ -270,7 +274,7 @@ function show(entry) {
 function resize(entry) {
   if (!entry.plot) return;
   if (entry.body.isConnected) {
-    entry.plot.setSize({ width: Math.max(entry.body.clientWidth, 240), height: 210 });
+    entry.plot.setSize({ width: Math.max(entry.body.clientWidth, 240), height: HEIGHT });
   } else {
     // Of a run that is not shown: it is made again when it is.
     entry.plot.destroy();

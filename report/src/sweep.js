@@ -5,11 +5,13 @@ import { h, s, section, select, table } from './dom.js';
 import { Run, readGrid } from './data.js';
 import { addSteps } from './cost.js';
 import { css, colour, onTheme, viridisCss } from './theme.js';
+import { label as tickLabel } from './plots.js';
 import { digits, shown } from './units.js';
 
 export async function readSweep(json) {
   const numbers = (await readGrid(json.numbers)).columns;
   const texts = new Map(json.texts.map(text => [text.name, text.cells]));
+  const words = settingsAsNumbers(json.keys, texts, numbers);
   const tables = new Map();
   for (const [name, grids] of Object.entries(json.tables ?? {})) tables.set(name, await Promise.all(grids.map(readGrid)));
   const runs = new Map();
@@ -18,12 +20,32 @@ export async function readSweep(json) {
     addSteps(run);
     runs.set(name, run);
   }
-  return { ...json, numbers, texts, tables, runs, count: json.numbers.rows };
+  return { ...json, numbers, texts, words, tables, runs, count: json.numbers.rows };
+}
+
+/** Settings that are texts have an axis, too: "6000 rpm" by its number where all have one unit, others by their order. Gives what stands at the ticks of those. */
+function settingsAsNumbers(keys, texts, numbers) {
+  const words = new Map();
+  for (const key of keys.filter(name => texts.has(name) && !numbers.has(name))) {
+    const cells = texts.get(key);
+    const parts = cells.map(cell => /^\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(\D*)$/.exec(cell));
+    const units = new Set(parts.filter(Boolean).map(part => part[2].trim()));
+    if (units.size === 1 && parts.every((part, i) => part || cells[i] === '')) {
+      numbers.set(key, { values: Float64Array.from(parts, part => (part ? Number(part[1]) : NaN)), unit: [...units][0] });
+      continue;
+    }
+    const own = [...new Set(cells.filter(cell => cell !== ''))];
+    if (!own.length || own.length > 40) continue;
+    words.set(key, own);
+    numbers.set(key, { values: Float64Array.from(cells, cell => (cell === '' ? NaN : own.indexOf(cell))), unit: '' });
+  }
+  return words;
 }
 
 /** Cells as texts and as numbers. */
 function cell(sweep, name, i, count = 5) {
   const number = sweep.numbers.get(name);
+  if (sweep.texts.has(name)) return sweep.texts.get(name)[i];
   if (number) {
     if (!Number.isFinite(number.values[i])) return '';
     if (name === 'case') return String(Math.round(number.values[i]));
@@ -46,6 +68,8 @@ export function sweepSection(sweep, index, open) {
   const list = h('div', {});
   const map = h('div', {});
   const choose = i => { state.chosen = i; showCase(sweep, i, detail); open(runOf(sweep, i)); drawMap(); drawTable(); detail.scrollIntoView({ behavior: 'smooth', block: 'nearest' }); };
+  // Why a case failed stands in its row.
+  const stateOf = i => [cell(sweep, 'status', i), sweep.texts.get('reason')?.[i]].filter(Boolean).join(': ');
   const drawTable = () => {
     const names = ['case', ...sweep.keys, 'status', ...state.columns];
     const key = i => { const number = sweep.numbers.get(state.sort); return number ? number.values[i] : cell(sweep, state.sort, i); };
@@ -53,7 +77,7 @@ export function sweepSection(sweep, index, open) {
       .sort((a, b) => { const [p, q] = [key(a), key(b)]; const order = typeof p === 'number' ? (Number.isNaN(p) ? 1 : Number.isNaN(q) ? -1 : p - q) : String(p).localeCompare(String(q)); return state.down ? -order : order; });
     const head = names.map(name => h('button', { type: 'button', class: 'sort', 'aria-label': `Sort by ${name}`, onclick: () => { state.down = state.sort === name ? !state.down : false; state.sort = name; drawTable(); } }, label(sweep, name), state.sort === name ? (state.down ? ' \u25be' : ' \u25b4') : ''));
     const shownRows = rows.slice(0, 400);
-    list.replaceChildren(table(head, shownRows.map(i => names.map((name, k) => (k === 0 ? h('button', { type: 'button', class: `open ${state.chosen === i ? 'chosen' : ''}`, 'aria-label': `Open case ${cell(sweep, 'case', i)}`, onclick: () => choose(i) }, cell(sweep, 'case', i)) : cell(sweep, name, i)))), { numbers: names.map((_, i) => i).filter(i => sweep.numbers.has(names[i])) }),
+    list.replaceChildren(table(head, shownRows.map(i => names.map((name, k) => (k === 0 ? h('button', { type: 'button', class: `open ${state.chosen === i ? 'chosen' : ''}`, 'aria-label': `Open case ${cell(sweep, 'case', i)}`, onclick: () => choose(i) }, cell(sweep, 'case', i)) : name === 'status' ? stateOf(i) : cell(sweep, name, i)))), { numbers: names.map((_, i) => i).filter(i => sweep.numbers.has(names[i])) }),
       h('p', { class: 'note' }, `${rows.length} of ${sweep.count} cases${rows.length > shownRows.length ? `, the first ${shownRows.length} are listed` : ''}`));
   };
   const drawMap = () => map.replaceChildren(scatter(sweep, state, choose));
@@ -85,11 +109,15 @@ function scatter(sweep, state, choose) {
   const [x0, x1] = air(extent(xs)), [y0, y1] = air(extent(ys)), [c0, c1] = extent(cs);
   const px = v => L + ((v - x0) / (x1 - x0)) * (W - L - Rr), py = v => H - B - ((v - y0) / (y1 - y0)) * (H - B - T);
   const svg = s('svg', { viewBox: `0 0 ${W} ${H}`, class: 'map', role: 'group', 'aria-label': `Map of ${state.c} over ${state.x} and ${state.y}` });
-  for (let k = 0; k <= 4; k++) {
-    const [vx, vy] = [x0 + ((x1 - x0) * k) / 4, y0 + ((y1 - y0) * k) / 4];
-    svg.append(s('line', { class: 'grid', x1: px(vx), x2: px(vx), y1: T, y2: H - B }), s('text', { class: 'tick', x: px(vx), y: H - B + 18, 'text-anchor': 'middle' }, digits(vx, 3)),
-      s('line', { class: 'grid', x1: L, x2: W - Rr, y1: py(vy), y2: py(vy) }), s('text', { class: 'tick', x: L - 8, y: py(vy) + 4, 'text-anchor': 'end' }, digits(vy, 3)));
-  }
+  // Words stand at their places, numbers at quarters.
+  const ticks = (name, low, high) => {
+    const words = sweep.words.get(name);
+    if (words) return words.map((word, at) => [at, word.length > 14 ? `${word.slice(0, 13)}\u2026` : word]).filter(([at]) => at % Math.ceil(words.length / 8) === 0);
+    const values = [0, 1, 2, 3, 4].map(k => low + ((high - low) * k) / 4);
+    return values.map(value => [value, tickLabel(value, values)]);
+  };
+  for (const [vx, text] of ticks(state.x, x0, x1)) svg.append(s('line', { class: 'grid', x1: px(vx), x2: px(vx), y1: T, y2: H - B }), s('text', { class: 'tick', x: px(vx), y: H - B + 18, 'text-anchor': 'middle' }, text));
+  for (const [vy, text] of ticks(state.y, y0, y1)) svg.append(s('line', { class: 'grid', x1: L, x2: W - Rr, y1: py(vy), y2: py(vy) }), s('text', { class: 'tick', x: L - 8, y: py(vy) + 4, 'text-anchor': 'end' }, text));
   svg.append(s('text', { class: 'tick strong', x: (L + W - Rr) / 2, y: H - 12, 'text-anchor': 'middle' }, label(sweep, state.x)),
     s('text', { class: 'tick strong', transform: `translate(20 ${(H - B + T) / 2}) rotate(-90)`, 'text-anchor': 'middle' }, label(sweep, state.y)));
   const radius = rows.length > 600 ? 3 : rows.length > 120 ? 5 : 8;

@@ -1,6 +1,7 @@
 //! State of a bearing at an instant, as far as means of a run are made of it: less than all outputs, for every step.
 
 use super::Simulation;
+use super::entering;
 use super::losses::Losses;
 use super::outputs::{Outputs, RaceOutput, spin_free_frame};
 use super::slip::RollingOrbit;
@@ -28,6 +29,8 @@ pub struct Instant {
     pub cage_slip: f64,
     /// See [`Outputs::ball_slip`].
     pub ball_slip: f64,
+    /// See [`Outputs::entering_slip_load`].
+    pub entering_slip_load: f64,
     /// See [`Outputs::friction_power`].
     pub friction_power: f64,
     /// See [`Outputs::friction_torque`].
@@ -123,6 +126,7 @@ impl Instant {
             rolling_speed: rolling.rolling,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
+            entering_slip_load: entering::slip_load(state, contacts),
             friction_power: totals.friction_power,
             power_per_ball: Race::BOTH.map(power),
             between_balls: contacts.ball_pairs.iter().map(|pair| pair.forces.load).fold(0.0, f64::max),
@@ -167,6 +171,7 @@ impl From<&Outputs> for Instant {
             rolling_speed: o.rolling_speed,
             cage_slip: o.cage_slip,
             ball_slip: o.ball_slip,
+            entering_slip_load: o.entering_slip_load,
             friction_power: o.friction_power,
             friction_torque: o.friction_torque,
             losses: o.losses,

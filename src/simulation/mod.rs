@@ -7,6 +7,7 @@ mod cage_start;
 pub mod circling;
 pub mod course;
 pub mod driven;
+mod entering;
 mod error;
 mod input_paths;
 pub mod inputs;

@@ -4,6 +4,7 @@ use std::ops::Index;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::entering;
 use super::losses::Losses;
 use super::margins::Margins;
 use super::slip::RollingOrbit;
@@ -86,6 +87,8 @@ pub struct Outputs {
     pub cage_slip: f64,
     /// [-] the same of the balls' own orbital speeds, weighted by load.
     pub ball_slip: f64,
+    /// \[W] largest normal load times slip speed of a ball on its way into the load zone; 0 under thrust alone.
+    pub entering_slip_load: f64,
     /// \[W] power lost to friction in all contacts.
     pub friction_power: f64,
     /// \[W] power lost to contact damping.
@@ -210,6 +213,7 @@ impl Outputs {
             rolling_speed: rolling.rolling,
             cage_slip: rolling.slip_of(cage_speed),
             ball_slip: rolling.slip_of(rolling.orbit),
+            entering_slip_load: entering::slip_load(state, contacts),
             friction_power: totals.friction_power,
             damping_power: totals.damping_power,
             stored_energy: stored_energy(model, state, contacts),

@@ -436,7 +436,7 @@ fn wrong_keys_are_refused_by_name_value_and_range() {
     let message =
         Scene::edited(&cold, [("interface.inputs.temperatures", "\"master\"")]).unwrap_err().to_string();
     assert!(message.contains("interface.inputs.temperatures") && message.contains("[growth]"), "{message}");
-    let cases: [(Changes<'_>, &[&str]); 15] = [
+    let cases: [(Changes<'_>, &[&str]); 20] = [
         (&[("growth.inner", "\"50 degC\"")], &["growth.inner", "50 degC"]),
         (&[("growth.inner", "2000.0")], &["growth.inner = 2000", "[-300, 1000] K"]),
         (&[("growth.iner", "1.0")], &["growth.iner", "did you mean inner?"]),
@@ -471,6 +471,14 @@ fn wrong_keys_are_refused_by_name_value_and_range() {
             )],
             &["growth.housing.radial_load", "loosens inner rings"],
         ),
+        (&[("growth.shaft", "{ diameter = 0.03, fit = \"K6\" }")], &["growth.shaft.fit", "small letters"]),
+        (&[("growth.shaft", "{ diameter = 0.03, fit = \"x6\" }")], &["growth.shaft.fit", "\"x6\"", "js"]),
+        (&[("growth.shaft", "{ diameter = 0.03, fit = \"k9\" }")], &["growth.shaft.fit", "4 to 8"]),
+        (
+            &[("growth.shaft", "{ diameter = 0.03, fit = \"k6\", interference = 1e-5 }")],
+            &["growth.shaft.fit", "this or interference"],
+        ),
+        (&[("growth.housing", "{ diameter = 0.062, fit = \"N7\" }")], &["growth.housing.outside", "needed"]),
         (
             &[("growth", "{ rotation = true }"), ("load.inner_speed", "100.0")],
             &["growth.shaft", "inner race turns", "growth.shaft.diameter"],
@@ -508,6 +516,70 @@ fn closed_form_interference_that_surfaces_and_load_take() {
     let gone = fitted("{ diameter = 0.03, interference = 2e-6, roughness = 6e-6 }");
     close(gone, plain(0.0), 1e-9, "nothing is left");
     assert_eq!(fitted("{ diameter = 0.03, interference = -5e-6, roughness = 6e-6 }"), plain(-5e-6));
+}
+
+/// Tables of fits that makers print for a bore of 30 mm and an outside diameter of 62 mm, shaft tolerance and housing tolerance against normal ones of
+/// the bearing: a run has the bits of the interference itself.
+#[test]
+fn published_fits_by_words_are_their_interferences() {
+    let fitted = |ring: &str, seat: &str, changes: Changes<'_>| {
+        let changes = [&[(ring, seat)][..], changes].concat();
+        Simulation::new(&preloaded(&changes)).unwrap().outputs().growth.unwrap()
+    };
+    for (word, [least, greatest]) in [
+        ("g6", [-20.0, 3.0]),
+        ("h5", [-9.0, 10.0]),
+        ("j5", [-4.0, 15.0]),
+        ("js6", [-6.5, 16.5]),
+        ("k5", [2.0, 21.0]),
+        ("k6", [2.0, 25.0]),
+        ("m6", [8.0, 31.0]),
+        ("n6", [15.0, 38.0]),
+        ("p6", [22.0, 45.0]),
+    ] {
+        let of = |fits: &str, um: f64| {
+            let given = fitted(
+                "growth.shaft",
+                &format!("{{ diameter = 0.03, interference = {:e} }}", 1e-6 * um),
+                &[],
+            );
+            let by_word = fitted(
+                "growth.shaft",
+                &format!("{{ diameter = 0.03, fit = \"{word}\" }}"),
+                &[("growth.fits", fits)],
+            );
+            close(by_word.clearance, given.clearance, 1e-9, word);
+        };
+        of("\"least\"", least);
+        of("\"mean\"", 0.5 * (least + greatest));
+        of("\"greatest\"", greatest);
+    }
+    for (word, [least, greatest]) in [
+        ("G7", [-53.0, -10.0]),
+        ("H7", [-43.0, 0.0]),
+        ("H8", [-59.0, 0.0]),
+        ("J7", [-31.0, 12.0]),
+        ("JS7", [-28.0, 15.0]),
+        ("K6", [-17.0, 15.0]),
+        ("K7", [-22.0, 21.0]),
+        ("M7", [-13.0, 30.0]),
+        ("N7", [-4.0, 39.0]),
+        ("P6", [13.0, 45.0]),
+        ("P7", [8.0, 51.0]),
+    ] {
+        let seat = |fit: &str| format!("{{ diameter = 0.062, outside = 0.1, {fit} }}");
+        for (fits, um) in [("\"least\"", least), ("\"greatest\"", greatest)] {
+            let given = fitted("growth.housing", &seat(&format!("interference = {:e}", 1e-6 * um)), &[]);
+            let by_word =
+                fitted("growth.housing", &seat(&format!("fit = \"{word}\"")), &[("growth.fits", fits)]);
+            close(by_word.clearance, given.clearance, 1e-9, word);
+        }
+    }
+    // Rings of class 5 are within 6 um at 30 mm.
+    let p5 = [("growth.fits", "\"greatest\""), ("growth.ring_class", "\"p5\"")];
+    let by_word = fitted("growth.shaft", "{ diameter = 0.03, fit = \"k5\" }", &p5);
+    let given = fitted("growth.shaft", "{ diameter = 0.03, interference = 17e-6 }", &[]);
+    close(by_word.clearance, given.clearance, 1e-9, "P5");
 }
 
 #[test]

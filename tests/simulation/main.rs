@@ -3,6 +3,7 @@
 
 mod closed_forms;
 mod dense;
+mod entering;
 #[path = "../common/evidence.rs"]
 mod evidence;
 mod hinge;

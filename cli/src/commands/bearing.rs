@@ -50,6 +50,15 @@ pub struct Options {
     /// Key of the scene that `--candidates` looks at, as load.y.force="2 kN"; several times.
     #[arg(long, value_name = "KEY=VALUE", requires = "candidates")]
     set: Vec<String>,
+    /// Tolerance of the shaft that the scene gets as a seat, such as k6 (ISO 286-1).
+    #[arg(long, value_name = "CLASS")]
+    shaft_fit: Option<String>,
+    /// Tolerance of the housing, such as H7; 1.5 times as wide as the bearing.
+    #[arg(long, value_name = "CLASS")]
+    housing_fit: Option<String>,
+    /// Class of the dimensions of the rings: PN, P6, P5 (ISO 492); PN if not given.
+    #[arg(long, value_name = "CLASS")]
+    ring_class: Option<String>,
     /// Which of these candidates the scene has.
     #[arg(long, value_name = "N", default_value_t = 1)]
     candidate: usize,
@@ -86,6 +95,49 @@ impl Options {
         }
         Ok(Request::parse(&text.to_string())?)
     }
+
+    /// Keys of the seats that are asked for, with their values, those of a section behind one another.
+    fn fits(&self, bearing: &Bearing) -> Vec<(String, String)> {
+        let metres = |length: f64| toml::Value::Float(length).to_string();
+        let word = |word: &String| toml::Value::String(word.clone()).to_string();
+        let class = self.ring_class.iter().map(|class| {
+            let class = class.to_lowercase();
+            ("growth.ring_class", word(&if class == "pn" { "normal".into() } else { class }))
+        });
+        let shaft = self.shaft_fit.iter().flat_map(|fit| {
+            [("growth.shaft.fit", word(fit)), ("growth.shaft.diameter", metres(bearing.bore))]
+        });
+        let housing = self.housing_fit.iter().flat_map(|fit| {
+            [
+                ("growth.housing.fit", word(fit)),
+                ("growth.housing.diameter", metres(bearing.outside)),
+                ("growth.housing.outside", metres(HOUSING * bearing.outside)),
+            ]
+        });
+        class.chain(shaft).chain(housing).map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+}
+
+/// [-] outside diameter of a housing over that of its bearing, where nothing is known of it.
+const HOUSING: f64 = 1.5;
+
+const NO_CHANGE: [(&str, &str); 0] = [];
+
+/// A scene with keys of sections that it does not have.
+fn with_fits(mut scene: String, fits: &[(String, String)]) -> Result<String, roulement::SceneError> {
+    let mut section = "";
+    for (key, value) in fits {
+        let (own, name) = key.rsplit_once('.').unwrap_or_default();
+        if own != section {
+            scene += &format!("\n[{own}]\n");
+            section = own;
+        }
+        scene += &format!("{name} = {value}\n");
+    }
+    if !fits.is_empty() {
+        roulement::Scene::edited(&scene, NO_CHANGE)?;
+    }
+    Ok(scene)
 }
 
 /// Writes the scene, or lists what is asked for.
@@ -102,11 +154,12 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     }
     let bearing = options.request()?.of_shelf(&shelf)?;
     if options.candidates {
-        let set = options.set.iter().map(|given| setting(given)).collect::<Result<Vec<_>, _>>()?;
+        let given = options.set.iter().map(|given| setting(given)).collect::<Result<Vec<_>, _>>()?;
+        let set = [options.fits(&bearing), given].concat();
         let spread = doubt(&bearing, options.candidate, &set, threads())?;
         return Ok(say(&format!("{}\n{}", candidates(&bearing)?, spread.to_text()))?);
     }
-    let scene = bearing.scene(options.candidate)?;
+    let scene = with_fits(bearing.scene(options.candidate)?, &options.fits(&bearing))?;
     match &options.output {
         Some(path) => {
             std::fs::write(path, scene).map_err(|why| format!("cannot write {}: {why}", path.display()))?;

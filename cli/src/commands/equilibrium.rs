@@ -16,6 +16,7 @@ use roulement::simulation::system::{MachineEquilibrium, largest_speed};
 
 use roulement_cli::duty::DutyRating;
 use roulement_cli::duty::say::with_duty;
+use roulement_cli::fits::{Fits, with_fits};
 use roulement_cli::modes::warnings;
 use roulement_cli::sweep::all::threads;
 use serde_json::Value;
@@ -91,6 +92,12 @@ impl FromStr for Speed {
     }
 }
 
+/// What a scene asks for beside its equilibrium: life over its duty, and what the tolerances of its fits leave open.
+struct Rated {
+    duty: Option<DutyRating>,
+    fits: Option<Fits>,
+}
+
 /// Solves it and says what is found.
 ///
 /// # Errors
@@ -98,7 +105,7 @@ impl FromStr for Speed {
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let Moment(time) = options.time;
     let scene = load(&options.scene)?;
-    let duty = DutyRating::of_scene(&scene, threads())?;
+    let rated = Rated { duty: DutyRating::of_scene(&scene, threads())?, fits: Fits::of(&scene, threads())? };
     match scene {
         MachineScene::Bearing(scene) => {
             if options.up_to.is_some() {
@@ -107,7 +114,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
                 );
             }
             let gyroscopic = options.gyroscopic.unwrap_or(GyroscopicChoice::OuterRaceControl);
-            of_bearing(&scene, time, options.json, gyroscopic.into(), duty.as_ref())
+            of_bearing(&scene, time, options.json, gyroscopic.into(), &rated)
         }
         MachineScene::Shaft(scene) => {
             if options.gyroscopic.is_some_and(|choice| !matches!(choice, GyroscopicChoice::Friction)) {
@@ -115,7 +122,7 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
                     "--gyroscopic: on a shaft friction carries the gyroscopic moments of balls".into()
                 );
             }
-            of_shaft(&scene, time, options.json, options.up_to, duty.as_ref())
+            of_shaft(&scene, time, options.json, options.up_to, &rated)
         }
     }
 }
@@ -125,11 +132,11 @@ fn of_shaft(
     time: f64,
     json: bool,
     up_to: Option<Speed>,
-    duty: Option<&DutyRating>,
+    rated: &Rated,
 ) -> Result<(), Box<dyn Error>> {
     let up_to = up_to.map_or_else(|| largest_speed(scene), |Speed(speed)| speed);
     let found = MachineEquilibrium::of(scene, time, up_to)?;
-    say_found(json, || found.to_json(), &found, duty)?;
+    say_found(json, || found.to_json(), &found, rated)?;
     for (of, mounted) in found.bearings.iter().zip(&scene.bearings) {
         let pressure = mounted.scene.pressure_note(of.peak_pressure());
         let life = of.outputs.life.as_ref().and_then(LifeOutput::warning);
@@ -150,18 +157,20 @@ fn tell_growing(scene: &MachineScene, time: f64) {
     tell(warnings(scene, time).into_iter().map(|warning| format!("warning: {warning}")));
 }
 
-/// Says an equilibrium, and behind it the rating over the duty of its scene.
+/// Says an equilibrium, and behind it what else its scene asks for.
 fn say_found(
     json: bool,
     as_json: impl FnOnce() -> Value,
     in_words: &impl std::fmt::Display,
-    duty: Option<&DutyRating>,
+    rated: &Rated,
 ) -> std::io::Result<()> {
-    let words = duty.map_or(String::new(), |duty| format!("\n{duty}"));
+    let Rated { duty, fits } = rated;
     if !json {
-        return say(&format!("{in_words}{words}"));
+        let [duty, fits] = [duty.as_ref().map(ToString::to_string), fits.as_ref().map(ToString::to_string)]
+            .map(|words| words.map_or(String::new(), |words| format!("\n{words}")));
+        return say(&format!("{in_words}{duty}{fits}"));
     }
-    say(&format!("{:#}\n", with_duty(as_json(), duty)))
+    say(&format!("{:#}\n", with_fits(with_duty(as_json(), duty.as_ref()), fits.as_ref())))
 }
 
 fn of_bearing(
@@ -169,12 +178,12 @@ fn of_bearing(
     time: f64,
     json: bool,
     gyroscopic: Gyroscopic,
-    duty: Option<&DutyRating>,
+    rated: &Rated,
 ) -> Result<(), Box<dyn Error>> {
     let input = EquilibriumInput::at(scene, gyroscopic, time);
     let model = Model::new(scene)?;
     let solution = equilibrium::solve(&model, &input)?;
-    say_found(json, || solution.to_json(), &solution, duty)?;
+    say_found(json, || solution.to_json(), &solution, rated)?;
     tell(scene.pressure_note(solution.peak_pressure(&model)));
     tell(solution.warning());
     tell(solution.life.and_then(|life| life.warning()));

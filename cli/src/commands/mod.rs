@@ -3,10 +3,12 @@
 mod bearing;
 mod cage;
 mod check;
+mod completions;
 mod contact;
 mod cost;
 mod effects;
 mod equilibrium;
+mod examples;
 mod export;
 mod field;
 mod film;
@@ -31,7 +33,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::auto;
 use roulement::interface::model_description::{Edition, Version, all, render_as};
@@ -119,6 +121,8 @@ enum Command {
     Identify(identify::Options),
     /// Measure error against CPU time of every setting that trades accuracy for speed.
     Cost(cost::Options),
+    /// Print what a shell completes the commands and their options by: bash, elvish, fish, powershell or zsh.
+    Completions(completions::Options),
     /// Print the model description of a scene's package.
     Describe {
         /// Scene file.
@@ -211,7 +215,9 @@ fn with_count_of_runs<T>(study: impl FnOnce(&(dyn Fn(usize) + Sync)) -> T) -> T 
 /// # Errors
 /// Whatever went wrong, as a sentence.
 pub fn run() -> Result<ExitCode, Box<dyn Error>> {
-    match Arguments::parse().command {
+    let commands = examples::with_examples(Arguments::command());
+    let given = Arguments::from_arg_matches(&commands.clone().get_matches())?;
+    match given.command {
         Command::Run(options) => return run::run(options),
         Command::Sweep(options) => return sweep::run(options),
         Command::Equilibrium(options) => equilibrium::run(&options)?,
@@ -252,6 +258,7 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Contact(options) => return contact::run(&options),
         Command::Identify(options) => identify::run(&options)?,
         Command::Cost(options) => return cost::run(options),
+        Command::Completions(options) => completions::run(&options, commands)?,
         Command::Describe { scene, fmi } => {
             let name = name_of(&scene);
             let machine = Machine::new(&load_for(&scene, true)?)?;

@@ -1,4 +1,4 @@
-//! `roulement rating`: the life under several loads, each with its part of the time: those of a table, or of the `[[duty]]` of the scene.
+//! `roulement rating`: the life under several loads, each with its part of the time: those of a table, or of the `[[duty]]` of the scene; in balance or run.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use roulement_cli::duty::DutyRating;
 use roulement_cli::duty::loads::Duty;
+use roulement_cli::fits::{self, WITHIN};
 use roulement_cli::sweep::all::threads;
 
 use super::{load, say, tell};
@@ -19,12 +20,16 @@ pub struct Options {
     /// `roulement sweep` has them; the scene's own `[[duty]]` if not given.
     #[arg(long)]
     loads: Option<PathBuf>,
+    /// Run the scene under each load for its `load.duration`, with friction, skidding and temperatures as they come, in place of its
+    /// equilibrium.
+    #[arg(long)]
+    runs: bool,
 }
 
-/// Finds the equilibrium and the life under each of the loads, adds them up, and prints CSV.
+/// Finds the life under each of the loads, by its equilibrium or its run, adds all up, and prints CSV.
 ///
 /// # Errors
-/// If a load has no equilibrium, or there are none.
+/// If a load has no equilibrium, its run fails, or there are none.
 pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let base = load(&options.scene)?;
     let duty = match &options.loads {
@@ -32,7 +37,16 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         None => Duty::of_scene(&base)?,
     };
     tell(duty.note());
-    let rating = DutyRating::of(&duty, threads())?;
+    let rating = match options.runs {
+        true => DutyRating::in_runs(&duty, threads())?,
+        false => DutyRating::of(&duty, threads())?,
+    };
     tell(rating.notes());
+    if fits::are_of(&base) {
+        for (name, within) in WITHIN {
+            let of = DutyRating::of(&duty.with(|scene| fits::at(scene, within)), threads())?;
+            tell([format!("note: fits at their {name}: {}", of.to_string().trim_end())]);
+        }
+    }
     Ok(say(&rating.to_csv())?)
 }

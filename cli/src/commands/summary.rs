@@ -15,7 +15,7 @@ use roulement_cli::report::losses::Closed;
 use roulement_cli::report::means::{Means, NEGLIGIBLE};
 use roulement_cli::report::spectrum::is_wanted;
 use roulement_cli::report::{phases, shaft};
-use roulement_cli::watch::{BearingSeen, ShaftSeen, headlines};
+use roulement_cli::watch::{BearingSeen, PerTurn, ShaftSeen, headlines};
 
 use super::effects::idle_in;
 use super::player::Played;
@@ -292,6 +292,12 @@ fn write_bearing(
     }
     if let Some(means) = means {
         write_means(out, (means, seen.part.closed.as_ref()), shown, now.cage.is_some())?;
+        if let Some(PerTurn { turns, mean, largest }) = &seen.entering {
+            writeln!(
+                out,
+                "entering balls   {mean:.3} W of load times slip speed, the mean over {turns} turns of the largest of each; at most {largest:.3} W"
+            )?;
+        }
         if let Some(life) = &seen.life {
             phases::say_life(out, "life             ", life)?;
             writeln!(out)?;

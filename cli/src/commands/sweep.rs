@@ -41,7 +41,7 @@ pub struct Options {
     #[arg(short, long, default_value = "sweep")]
     output: PathBuf,
     /// Variables whose mean, least, largest and last value the summary has, too: names with `*` for any characters, such as
-    /// `ball[*].inner.load`. Whole tables have these alone.
+    /// `ball[*].inner.load`. Whole tables have these alone. With a limit in SI, such as `clearance<0`, also when a case comes there first.
     #[arg(long, value_delimiter = ',')]
     columns: Vec<String>,
     /// Keep the whole table of every case, too.

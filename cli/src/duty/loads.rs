@@ -87,6 +87,17 @@ impl Duty {
         Ok(Self { loads, from, by_hours })
     }
 
+    /// The same with other scenes.
+    #[must_use]
+    pub fn with(&self, of: impl Fn(&MachineScene) -> MachineScene) -> Self {
+        let loads = self.loads.iter().map(|load| Load {
+            name: load.name.clone(),
+            part: load.part,
+            scene: of(&load.scene),
+        });
+        Self { loads: loads.collect(), from: self.from.clone(), by_hours: self.by_hours }
+    }
+
     /// What its reader should know of the shares.
     pub fn note(&self) -> Option<String> {
         let whole: f64 = self.loads.iter().map(|load| load.part).sum();

@@ -1,11 +1,13 @@
-//! Life over a duty: an equilibrium under each of its loads, and what all of them take of the life together. Everything that tells of a duty has it from here.
+//! Life over a duty: an equilibrium under each of its loads, or a run, and what all of them take of the life together. Everything that tells of a duty has it from here.
 //!
 //! | file | contents |
 //! |---|---|
 //! | `loads` | the loads: of a table, or the `[[duty]]` of a scene |
+//! | `in_runs` | the same of a bearing over its run under one load |
 //! | `rated` | life, safety and losses of a bearing under one load, and under all (Miner's sum) |
 //! | `say` | as CSV, JSON and words |
 
+mod in_runs;
 pub mod loads;
 pub mod rated;
 pub mod say;
@@ -45,6 +47,8 @@ pub struct UnderLoad {
     pub part: f64,
     /// Its bearings by their names; that of a bearing alone is empty.
     pub bearings: Vec<(String, Rated)>,
+    /// Had the means of its run not settled?
+    pub unsettled: bool,
 }
 
 /// Life over a duty.
@@ -58,6 +62,8 @@ pub struct DutyRating {
     pub whole: f64,
     /// Are their parts hours?
     pub by_hours: bool,
+    /// Was every load run? Else they are in balance.
+    pub by_runs: bool,
 }
 
 /// What all bearings come to.
@@ -97,15 +103,27 @@ impl DutyRating {
     /// # Errors
     /// If a load has no equilibrium; names it.
     pub fn of(duty: &Duty, threads: usize) -> Result<Self, DutyError> {
+        Self::rated(duty, threads, false)
+    }
+
+    /// The rating of a duty of which every load is run, some at a time.
+    ///
+    /// # Errors
+    /// If a load has no equilibrium or its run fails; names it.
+    pub fn in_runs(duty: &Duty, threads: usize) -> Result<Self, DutyError> {
+        Self::rated(duty, threads, true)
+    }
+
+    fn rated(duty: &Duty, threads: usize, by_runs: bool) -> Result<Self, DutyError> {
         let whole: f64 = duty.loads.iter().map(|load| load.part).sum();
-        let under = |place: usize| under(&duty.loads[place], whole, &duty.from);
+        let under = |place: usize| under(&duty.loads[place], whole, &duty.from, by_runs);
         let loads =
             on_threads(duty.loads.len(), threads, under).into_iter().collect::<Result<Vec<_>, _>>()?;
         let names = loads.first().map_or(&[][..], |load| &load.bearings);
         let together = names.iter().map(|(name, _)| {
             (name.clone(), together(&of_bearing(&loads, name).cloned().collect::<Vec<_>>()))
         });
-        Ok(Self { together: together.collect(), loads, whole, by_hours: duty.by_hours })
+        Ok(Self { together: together.collect(), loads, whole, by_hours: duty.by_hours, by_runs })
     }
 
     /// \[h] the whole duty, where its parts are hours.
@@ -160,7 +178,7 @@ impl OfMachine {
 }
 
 /// Every bearing under a load.
-fn under(load: &Load, whole: f64, from: &str) -> Result<UnderLoad, DutyError> {
+fn under(load: &Load, whole: f64, from: &str, by_runs: bool) -> Result<UnderLoad, DutyError> {
     let mut scene = load.scene.clone();
     scene.bearings_mut().for_each(|bearing| {
         bearing.effects.rating.section.get_or_insert_default();
@@ -168,6 +186,10 @@ fn under(load: &Load, whole: f64, from: &str) -> Result<UnderLoad, DutyError> {
     let failed = |why: &dyn std::fmt::Display| DutyError::Load(format!("{from}{}: {why}", load.name));
     scene.check().map_err(|why| failed(&why))?;
     let machine = Machine::new(&scene).map_err(|why| failed(&why))?;
-    let bearings = found(&scene, &machine, load.part / whole);
-    Ok(UnderLoad { name: load.name.clone(), part: load.part, bearings })
+    let share = load.part / whole;
+    let (bearings, settled) = match by_runs {
+        true => in_runs::found(&scene, machine, share).map_err(|why| failed(&why))?,
+        false => (found(&scene, &machine, share), true),
+    };
+    Ok(UnderLoad { name: load.name.clone(), part: load.part, bearings, unsettled: !settled })
 }

@@ -50,26 +50,40 @@ pub fn found(scene: &MachineScene, machine: &Machine, share: f64) -> Vec<(String
     balls.chain(of_rollers(scene, machine, share)).collect()
 }
 
+/// [N m] torque that brings the losses of a bearing at its speed; 0 where it stands. At the start of a run its balls are in balance with their loads,
+/// but not yet with friction along their orbits: what speeds them up or slows them down is in the moment on the races of that instant, and
+/// in none of the torque that lasts.
+pub fn torque_of_losses(bearing: &Simulation) -> f64 {
+    let speed = speed(bearing);
+    if speed > 0.0 { bearing.outputs().losses.total() / speed } else { 0.0 }
+}
+
+/// [rad/s] speed of the races against each other.
+pub fn speed(bearing: &Simulation) -> f64 {
+    let outputs = bearing.outputs();
+    let spin =
+        |race: Race| (outputs[race].pose.orientation.inverse() * outputs[race].twist.angular_velocity).x;
+    (spin(Race::Inner) - spin(Race::Outer)).abs()
+}
+
 /// A ball bearing.
 fn of_balls(bearing: &Simulation, share: f64) -> Option<Rated> {
     let outputs = bearing.outputs();
     let life = outputs.life?;
-    let spin =
-        |race: Race| (outputs[race].pose.orientation.inverse() * outputs[race].twist.angular_velocity).x;
     Some(Rated {
         share,
-        speed: (spin(Race::Inner) - spin(Race::Outer)).abs(),
+        speed: speed(bearing),
         equivalent_load: life.equivalent_load,
         lives: [Some(life.reference), life.modified],
         safety: life.static_safety,
         exponent: 3.0,
-        torque: Some(outputs.friction_torque.abs()),
+        torque: Some(torque_of_losses(bearing)),
         loss: Some(outputs.losses.total()),
     })
 }
 
 /// Roller bearings of a machine.
-fn of_rollers(scene: &MachineScene, machine: &Machine, share: f64) -> Vec<(String, Rated)> {
+pub(super) fn of_rollers(scene: &MachineScene, machine: &Machine, share: f64) -> Vec<(String, Rated)> {
     let (MachineScene::Shaft(scene), Machine::Shaft(system)) = (scene, machine) else { return vec![] };
     let links = scene.link_names().zip(&system.outputs().links);
     let of = |(name, link): (&str, &LinkOutputs)| {

@@ -24,7 +24,7 @@ impl DutyRating {
     /// A row for each bearing under each load, and of all bearings together; then under all loads.
     pub fn to_csv(&self) -> String {
         let mut text = HEADER.to_string();
-        for UnderLoad { name, part, bearings } in &self.loads {
+        for UnderLoad { name, part, bearings, .. } in &self.loads {
             self.rows(&mut text, name, bearings, *part);
         }
         self.rows(&mut text, ALL, &self.together, self.whole);
@@ -95,7 +95,15 @@ impl DutyRating {
                 100.0 * worst.taken
             ))
         });
-        without.into_iter().chain(worst).collect()
+        let unsettled: Vec<&str> =
+            self.loads.iter().filter(|load| load.unsettled).map(|load| load.name.as_str()).collect();
+        let unsettled = (!unsettled.is_empty()).then(|| {
+            format!(
+                "note: means of runs that had not settled: load {}; a longer load.duration tells more",
+                unsettled.join(", ")
+            )
+        });
+        without.into_iter().chain(unsettled).chain(worst).collect()
     }
 
     /// `loads`, a list with `name`, `share`, `bearings` and `machine`; and what all of them come to, `bearings` and `machine`. Units: speed
@@ -220,8 +228,9 @@ impl fmt::Display for DutyRating {
         let hours = self.hours().map_or(String::new(), |hours| format!(" over {} h", three(hours)));
         writeln!(
             out,
-            "duty             {} loads in balance{hours}, added up by Miner's rule",
-            self.loads.len()
+            "duty             {} loads {}{hours}, added up by Miner's rule",
+            self.loads.len(),
+            if self.by_runs { "run" } else { "in balance" }
         )?;
         let life = |[reference, modified]: [Option<f64>; 2]| {
             let of = |name: &str, hours: Option<f64>| hours.map(|hours| format!("{name} {} h", three(hours)));

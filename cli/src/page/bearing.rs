@@ -10,6 +10,21 @@ use serde_json::{Value, json};
 /// Names of the directions of a load.
 const DIRECTIONS: [&str; 5] = ["x", "y", "z", "ry", "rz"];
 
+/// Bore, outside diameter and width in the title of a scene, as those of catalogue bearings have them: "25 x 52 x 15 mm".
+fn outline_of(title: &str) -> Option<Outline> {
+    let of = |part: &str| -> Option<[f64; 3]> {
+        let lengths: Vec<f64> = part
+            .trim()
+            .strip_suffix("mm")?
+            .split('x')
+            .map(|length| length.trim().parse().ok())
+            .collect::<Option<_>>()?;
+        lengths.try_into().ok()
+    };
+    let [bore, outside, width] = title.split(',').find_map(of)?.map(|length| 1e-3 * length);
+    Some(Outline { bore, outside, width })
+}
+
 /// All of it; lengths \[m], angles \[rad].
 pub fn describe(scene: &Scene, model: &Model) -> Value {
     let bearing = &model.bearing;
@@ -18,6 +33,9 @@ pub fn describe(scene: &Scene, model: &Model) -> Value {
     let gravity = scene.effects.gravity.at(0.0);
     let misaligned = |race: &RaceSection| json!({ "ry": schedule(&race.misalignment.ry), "rz": schedule(&race.misalignment.rz) });
     let outline = estimate::of(scene, model).map_or(usual, |estimate| estimate.outline);
+    let named = outline_of(&scene.title)
+        .filter(|named| outline == usual && named.bore < pitch - ball && pitch + ball < named.outside);
+    let outline = named.unwrap_or(outline);
     let race = |race: Race| {
         let (raceway, section) =
             (bearing.raceway(race), if race == Race::Inner { &scene.inner } else { &scene.outer });

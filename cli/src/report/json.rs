@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::figures::{Figures, Shown};
 use super::losses::Closed;
 use super::means::{Mean, Means};
-use crate::watch::{Extreme, Life, Part, Phase, Seen, headlines};
+use crate::watch::{Extreme, Life, Part, PerTurn, Phase, Seen, headlines};
 
 /// Summary of a run, with error bars where figures have them: of a bearing alone, or of each bearing of a shaft by its name, and of the
 /// shaft as `shaft`. Figures are those of the bearings, then of the shaft.
@@ -41,6 +41,7 @@ pub fn summary(part: Part<'_>, shown: &Shown) -> Value {
             summary["losses"]["parts"] = parts_of_losses(means);
         }
         summary["life"] = seen.life.as_ref().map(life).into();
+        summary["entering_slip_load"] = seen.entering.as_ref().map(per_turn).into();
         summary["effects"] =
             headlines(simulation).into_iter().map(|(row, value)| (row.name, value)).collect();
         summary["peak_pressure"] = seen.limits.peak_pressure.into();
@@ -70,6 +71,11 @@ fn parts_of_losses(means: &Means) -> Value {
 fn closed(closed: &Closed) -> Value {
     let Closed { torque, other, stored, lost, .. } = closed;
     json!({ "torque_times_speed": torque, "other_work": other, "stored": stored, "lost": lost, "left_open": closed.left() })
+}
+
+/// The largest load times slip speed of balls that enter the load zone \[W], by turns of the balls.
+fn per_turn(PerTurn { turns, mean, largest }: &PerTurn) -> Value {
+    json!({ "turns": turns, "mean": mean, "largest": largest })
 }
 
 fn life(Life { life, hours, modified_hours }: &Life) -> Value {

@@ -17,6 +17,9 @@ const START: f64 = 0.02;
 /// [-] by how much the start has to be larger than all that follows before it is left out of the scale.
 const JUMP: f64 = 5.0;
 
+/// [-] share of the largest load of a race that a ball carries whose creepages are drawn.
+const LOADED: f64 = 0.01;
+
 /// A curve: its name, points, and where it is one of several balls the least and largest values of all of them.
 pub(super) struct Curve {
     pub name: String,
@@ -41,7 +44,7 @@ impl Panel {
                 curve.points.iter().map(|point| point.1).chain(curve.band.iter().flat_map(|b| [b.0, b.1]))
             })
         };
-        values().all(|value| value.abs() < 0.01 * self.least)
+        values().all(|value| !value.is_finite() || value.abs() < 0.01 * self.least)
     }
 }
 
@@ -76,21 +79,35 @@ pub fn write_plots(scene: &Scene, history: &[Outputs], directory: &Path) -> Resu
 
 /// A quantity of both contacts of ball 1 over time, within the range of all balls: what figure 7 of the paper shows.
 fn contact_panels(history: &[Outputs]) -> Vec<Panel> {
-    let panel = |y_label, least, get: fn(&ContactOutput) -> f64| {
-        let curve = |name: &str, side: fn(&BallOutput) -> &ContactOutput| Curve {
-            name: name.into(),
-            points: history.iter().map(|o| (o.time * 1e3, get(side(&o.balls[0])))).collect(),
-            band: history.iter().map(|o| extremes(o.balls.iter().map(|ball| get(side(ball))))).collect(),
+    let panel_of = |y_label, least, get: fn(&ContactOutput) -> f64, share: f64| {
+        let curve = |name: &str, side: fn(&BallOutput) -> &ContactOutput| {
+            // Not a number where a ball hardly carries anything: its creepage would set the scale of all.
+            let values = |o: &Outputs| -> Vec<f64> {
+                let most = o.balls.iter().map(|ball| side(ball).load).fold(0.0, f64::max);
+                let value = |contact: &ContactOutput| {
+                    if contact.load >= share * most { get(contact) } else { f64::NAN }
+                };
+                o.balls.iter().map(|ball| value(side(ball))).collect()
+            };
+            let rows: Vec<Vec<f64>> = history.iter().map(values).collect();
+            let points = history.iter().zip(&rows).map(|(o, row)| (o.time * 1e3, row[0]));
+            Curve {
+                name: name.into(),
+                points: points.collect(),
+                band: rows.iter().map(|row| extremes(row.iter().copied())).collect(),
+            }
         };
         let curves = vec![curve("inner race", |b| &b.inner), curve("outer race", |b| &b.outer)];
         Panel { x_label: "time [ms]", y_label, curves, least }
     };
+    let panel = |y_label, least, get| panel_of(y_label, least, get, 0.0);
+    let creepage = |y_label, least, get| panel_of(y_label, least, get, LOADED);
     vec![
         panel("load [N]", 0.1, |c| c.load),
         panel("contact angle [deg]", 0.01, |c| c.contact_angle.to_degrees()),
-        panel("longitudinal creepage [1e-3]", 0.001, |c| c.creepage_longitudinal * 1e3),
-        panel("lateral creepage [1e-3]", 0.001, |c| c.creepage_lateral * 1e3),
-        panel("spin creepage [1/m]", 0.01, |c| c.creepage_spin),
+        creepage("longitudinal creepage [1e-3]", 0.001, |c| c.creepage_longitudinal * 1e3),
+        creepage("lateral creepage [1e-3]", 0.001, |c| c.creepage_lateral * 1e3),
+        creepage("spin creepage [1/m]", 0.01, |c| c.creepage_spin),
         panel("spin moment [N mm]", 0.001, |c| c.spin_moment * 1e3),
         panel("longitudinal creep force [N]", 0.01, |c| c.force_longitudinal),
         panel("lateral creep force [N]", 0.01, |c| c.force_lateral),
@@ -228,6 +245,7 @@ fn draw(panel: &Panel, area: &Area<'_>) -> Drawn {
                     .points
                     .iter()
                     .zip(&curve.band)
+                    .filter(|(_, band)| band.0 <= band.1)
                     .map(move |(point, band)| (point.0, of(band).clamp(low, high)))
             };
             let mut outline: Vec<_> = edge(|band| band.0).collect();
@@ -235,9 +253,10 @@ fn draw(panel: &Panel, area: &Area<'_>) -> Drawn {
             chart.draw_series([Polygon::new(outline, colour.mix(BAND).filled())])?;
         }
         // What is cut off is left out, not drawn along the frame.
-        let inside = |point: &&(f64, f64)| point.1 >= low && point.1 <= high;
-        let points = curve.points.iter().filter(inside).copied();
-        chart.draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?;
+        let inside = |point: &(f64, f64)| point.1 >= low && point.1 <= high;
+        for points in curve.points.split(|point| !inside(point)) {
+            chart.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(LINE)))?;
+        }
     }
     Ok(())
 }

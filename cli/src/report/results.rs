@@ -36,6 +36,9 @@ pub enum ResultsError {
     /// A column that is not there.
     #[error("--columns {0}: there is no such column; `*` stands for any characters, time is always there")]
     Column(String),
+    /// A limit that cannot be read.
+    #[error("--columns {0}: a limit is a column, < or >, and a number in SI, such as `clearance<0`")]
+    Limit(String),
 }
 
 /// Columns and rows of a run that are written.

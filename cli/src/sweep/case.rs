@@ -13,7 +13,8 @@ use roulement::simulation::play::{Rows, play_observed};
 
 use super::SweepError;
 use super::columns::GatheredMachine;
-use super::extremes::{Gathered, OF_BALLS};
+use super::extremes::{Gathered, OF_BALLS, OfColumn};
+use super::limits::all_bare;
 use crate::duty::DutyRating;
 use crate::error::{Compared, Refined, Run, refine};
 use crate::modes::{Found, judged, told};
@@ -145,14 +146,14 @@ fn played(
 ) -> Result<Done, Ended> {
     let failed = |why: &dyn std::fmt::Display| Ended::Failed(why.to_string());
     let written = |why: ResultsError| match why {
-        ResultsError::Column(_) => Ended::Failed(why.to_string()),
+        ResultsError::Column(_) | ResultsError::Limit(_) => Ended::Failed(why.to_string()),
         ResultsError::Write { .. } => Ended::Files(SweepError::Files(why.to_string())),
     };
     let mut machine = Machine::new(scene).map_err(|why| failed(&why))?;
     let rows = Rows::of_scene(scene);
     let gathered = GatheredMachine::new(scene, &machine, rows.duration, &wanted.columns).map_err(written)?;
     let mut observers = (Watch::of(&machine), gathered);
-    let choice = Choice { columns: wanted.columns.clone(), ..Choice::default() };
+    let choice = Choice { columns: all_bare(&wanted.columns), ..Choice::default() };
     let begun = |path: &Path| Tables::whole(&machine, &choice, path);
     let mut table = table.map(begun).transpose().map_err(written)?;
     let flow = play_observed(&mut machine, rows, &mut observers, |machine, (watch, _)| {
@@ -231,6 +232,7 @@ fn of_machine(done: &Done, goal: Option<&'static str>) -> Row {
                 row.push(number(&of("error"), &column.unit, error.mean));
             }
         }
+        row.extend(times_of(&gathered.shaft));
         row.extend(seen.part.phases.iter().flat_map(|phase| of_phase(phase, str::to_string)));
     }
     let goal = goal.filter(|_| machine.shaft().is_none());
@@ -351,6 +353,7 @@ fn summary(
         row.push(number("torque_power.mean", "W", closed.torque));
         row.push(number("loss.left_open", "W", closed.left()));
     }
+    row.push(optional("entering_slip_load.per_turn", "W", seen.entering.map(|of| of.mean)));
     if let Some(Life { life, hours, modified_hours }) = &seen.life {
         row.push(number("life.L10r.window", "1", life.reference));
         row.push(optional("life.L10r.hours", "h", *hours));
@@ -379,7 +382,14 @@ fn summary(
         push("largest", of.extremes.largest);
         push("end", of.end);
     }
+    row.extend(times_of(&gathered.chosen));
     row
+}
+
+/// When limits of columns were met first; empty where they were not.
+fn times_of(columns: &[OfColumn]) -> Row {
+    let limits = OfColumn::limits(columns).into_iter();
+    limits.map(|(limit, time)| optional(&format!("{limit}.time"), "s", time)).collect()
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use roulement::simulation::machine::Machine;
 use roulement::simulation::play::Observer;
 
 use super::extremes::{Gathered, OfColumn};
+use super::limits::{Limit, all_bare, bare};
 use crate::report::results::{Choice, Columns, ResultsError, fits};
 
 /// Columns that are chosen of each bearing, by the names that its own table has: those that begin with its name, or with `*`; of a
@@ -22,7 +23,7 @@ fn of_bearings(scene: &MachineScene, chosen: &[String]) -> Vec<Vec<String>> {
         let rows = Variables::moving(bearing, true);
         let own = |pattern: &String| {
             let (bearing, column) = pattern.split_once('.')?;
-            let is_here = fits_one(rows.rows(), column) || !fits_one(&of_shaft, pattern);
+            let is_here = fits_one(rows.rows(), bare(column)) || !fits_one(&of_shaft, bare(pattern));
             (fits(name, bearing) && is_here).then(|| column.to_string())
         };
         chosen.iter().filter_map(own).collect()
@@ -38,11 +39,12 @@ fn fits_one(rows: &[Variable], pattern: &str) -> bool {
 /// Is all there that is chosen?
 ///
 /// # Errors
-/// If a column is not there.
+/// If a column is not there, or a limit cannot be read.
 pub fn check(scene: &MachineScene, chosen: &[String]) -> Result<(), ResultsError> {
     for ((_, bearing), columns) in scene.bearings().into_iter().zip(of_bearings(scene, chosen)) {
-        Columns::new(bearing, &Choice { columns, ..Choice::default() })?;
+        Columns::new(bearing, &Choice { columns: all_bare(&columns), ..Choice::default() })?;
     }
+    Limit::all(chosen)?;
     let Some(shaft) = scene.shaft() else { return Ok(()) };
     // All outputs of the shaft are in the summary; a name among them chooses for tables of cases.
     let own = rows_of_shaft(shaft);
@@ -50,7 +52,7 @@ pub fn check(scene: &MachineScene, chosen: &[String]) -> Result<(), ResultsError
         let of_bearing = pattern
             .split_once('.')
             .is_some_and(|(bearing, _)| shaft.bearings.iter().any(|own| fits(&own.name, bearing)));
-        of_bearing || fits_one(&own, pattern)
+        of_bearing || fits_one(&own, bare(pattern))
     };
     match chosen.iter().find(|pattern| !known(pattern)) {
         Some(pattern) => Err(ResultsError::Column(pattern.clone())),
@@ -73,7 +75,7 @@ impl GatheredMachine {
     /// Gatherer of a run of a duration \[s].
     ///
     /// # Errors
-    /// If a column is not there.
+    /// If a column is not there, or a limit cannot be read.
     pub fn new(
         scene: &MachineScene,
         machine: &Machine,
@@ -83,13 +85,16 @@ impl GatheredMachine {
         let bearings = machine.bearings().zip(of_bearings(scene, chosen));
         let bearings = bearings.map(|((_, bearing), columns)| Gathered::new(bearing, duration, &columns));
         let variables = machine.shaft().map(MachineVariables::new);
+        let limits = Limit::all(chosen)?;
         let rows_of = || variables.iter().flat_map(|variables| variables.rows().iter().enumerate());
         let is_output =
             |row: &Variable| matches!(row.source, Source::Shaft(_)) && row.causality == Causality::Output;
         let outputs = || rows_of().filter(|(_, row)| is_output(row));
         Ok(Self {
             bearings: bearings.collect::<Result<_, _>>()?,
-            shaft: outputs().map(|(_, row)| OfColumn::new(&row.name, row.unit.name, duration)).collect(),
+            shaft: outputs()
+                .map(|(_, row)| OfColumn::new(&row.name, row.unit.name, duration, &limits))
+                .collect(),
             references: outputs().map(|(reference, _)| reference).collect(),
             variables,
         })

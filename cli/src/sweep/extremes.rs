@@ -3,6 +3,7 @@
 use roulement::simulation::Simulation;
 use roulement::simulation::outputs::{BallOutput, Outputs};
 
+use super::limits::{Limit, all_bare};
 use crate::report::means::Blocks;
 use crate::report::quantities::{COUNT, values};
 use crate::report::results::{Choice, Columns, ResultsError};
@@ -46,6 +47,8 @@ pub struct OfColumn {
     pub extremes: Extremes,
     /// At the end.
     pub end: f64,
+    /// Limits of it, and \[s] when each was met first.
+    pub met: Vec<(Limit, Option<f64>)>,
     /// \[s] where the window of means begins.
     begin: f64,
     /// \[s] of the last value.
@@ -56,13 +59,15 @@ pub struct OfColumn {
 }
 
 impl OfColumn {
-    /// Before the start of a run of a duration \[s].
-    pub fn new(name: &str, unit: &str, duration: f64) -> Self {
+    /// Before the start of a run of a duration \[s], with the limits that it has among some.
+    pub fn new(name: &str, unit: &str, duration: f64, limits: &[Limit]) -> Self {
+        let own = limits.iter().filter(|limit| limit.is_of(name));
         Self {
             name: name.to_string(),
             unit: unit.to_string(),
             extremes: Extremes::NONE,
             end: f64::NAN,
+            met: own.map(|limit| (limit.clone(), None)).collect(),
             begin: Blocks::window_begins(duration),
             time: f64::NAN,
             integral: 0.0,
@@ -76,6 +81,9 @@ impl OfColumn {
             return;
         }
         self.extremes.push(value);
+        for (limit, met) in self.met.iter_mut().filter(|(_, met)| met.is_none()) {
+            *met = limit.is_met(value).then_some(time);
+        }
         if time > self.begin && !self.time.is_nan() {
             let from = self.time.max(self.begin);
             let share = (from - self.time) / (time - self.time);
@@ -84,6 +92,18 @@ impl OfColumn {
             self.duration += time - from;
         }
         (self.time, self.end) = (time, value);
+    }
+
+    /// Limits of columns, and \[s] when the first column met each; none where none has.
+    pub fn limits(columns: &[Self]) -> Vec<(String, Option<f64>)> {
+        let mut all: Vec<(String, Option<f64>)> = vec![];
+        for (limit, met) in columns.iter().flat_map(|column| &column.met) {
+            match all.iter_mut().find(|(text, _)| *text == limit.text) {
+                Some((_, first)) => *first = [*first, *met].into_iter().flatten().reduce(f64::min),
+                None => all.push((limit.text.clone(), *met)),
+            }
+        }
+        all
     }
 
     /// Over the window of means.
@@ -107,14 +127,15 @@ impl Gathered {
     /// Gatherer of a run of a duration \[s]; of variables by their names with `*` for any characters.
     ///
     /// # Errors
-    /// If a variable is not there.
+    /// If a variable is not there, or a limit cannot be read.
     pub fn new(simulation: &Simulation, duration: f64, chosen: &[String]) -> Result<Self, ResultsError> {
         let columns = if chosen.is_empty() {
             None
         } else {
-            let choice = Choice { columns: chosen.to_vec(), ..Choice::default() };
+            let choice = Choice { columns: all_bare(chosen), ..Choice::default() };
             Some(Columns::new(simulation.scene(), &choice)?)
         };
+        let limits = Limit::all(chosen)?;
         Ok(Self {
             quantities: [Extremes::NONE; COUNT],
             balls: [Extremes::NONE; OF_BALLS.len()],
@@ -122,7 +143,7 @@ impl Gathered {
             chosen: columns
                 .iter()
                 .flat_map(|columns| columns.names().skip(1))
-                .map(|(name, unit)| OfColumn::new(name, unit, duration))
+                .map(|(name, unit)| OfColumn::new(name, unit, duration, &limits))
                 .collect(),
             columns,
         })

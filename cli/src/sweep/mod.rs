@@ -7,6 +7,7 @@
 //! | `ranges` | cases from ranges: grid and Latin hypercube |
 //! | `case` | one case, from its scene to its row of the summary |
 //! | `columns` | columns that are chosen for the summary, of bearings and of a shaft |
+//! | `limits` | when chosen columns first come to a limit |
 //! | `extremes` | least and largest values of a run, means of chosen columns |
 //! | `store` | rows of finished cases on the disk, by a hash of all that they follow from |
 //! | `all` | all cases on some threads |
@@ -17,6 +18,7 @@ pub mod case;
 pub mod cases;
 mod columns;
 mod extremes;
+mod limits;
 mod ranges;
 pub mod setting;
 pub mod store;

@@ -21,6 +21,7 @@ use crate::report::thinned::Thinned;
 
 use super::life::Life;
 use super::part::{PartSeen, PartWatch};
+use super::turns::{PerTurn, Turns};
 
 /// Gathers while a bearing runs.
 pub struct BearingWatch {
@@ -35,6 +36,8 @@ pub struct BearingWatch {
     told: Vec<Alarm>,
     /// Revolutions and loads from step to step, for the life over the window.
     rated: Thinned<(f64, Sums)>,
+    /// Load times slip speed of balls that enter the load zone.
+    entering: Turns,
 }
 
 /// Gathered figures of a bearing.
@@ -51,6 +54,8 @@ pub struct BearingSeen {
     pub life: Option<Life>,
     /// A race that moves by more than its loads explain.
     pub circling: Option<Circling>,
+    /// \[W] largest load times slip speed of a ball that enters the load zone, in each turn of the balls over the window of the means.
+    pub entering: Option<PerTurn>,
     /// Warnings while it ran.
     pub alarms: Vec<Alarm>,
 }
@@ -74,6 +79,7 @@ impl BearingWatch {
             alarms: BearingAlarms::default(),
             told: vec![],
             rated: Thinned::default(),
+            entering: Turns::default(),
         }
     }
 
@@ -94,6 +100,7 @@ impl BearingWatch {
         self.part.step(now, largest(&instant), &peaks, rating);
         self.part.losses.step(simulation, &instant);
         self.limits.step(&instant);
+        self.entering.step(instant.time, instant.cage_speed, instant.entering_slip_load);
         if let Some(sums) = rating {
             self.rated.push((instant.time, *sums));
         }
@@ -143,6 +150,7 @@ impl BearingWatch {
             energy: self.energy,
             limits: self.limits,
             circling: Circling::of(places, simulation, Exciting { scripted, ..exciting }),
+            entering: self.entering.since(from),
             alarms: self.told,
         }
     }
@@ -199,10 +207,16 @@ impl Peak {
     }
 }
 
-const PEAKS: [Peak; 6] = [
+const PEAKS: [Peak; 7] = [
     Peak { name: "peak pressure on the inner race", unit: "Pa", of_cage: false, get: |o| o.peak_pressure[0] },
     Peak { name: "peak pressure on the outer race", unit: "Pa", of_cage: false, get: |o| o.peak_pressure[1] },
     Peak { name: "load between balls", unit: "N", of_cage: false, get: |o| o.between_balls },
+    Peak {
+        name: "slip load of balls that enter the load zone",
+        unit: "W",
+        of_cage: false,
+        get: |o| o.entering_slip_load,
+    },
     Peak {
         name: "eccentricity of the cage",
         unit: "m",

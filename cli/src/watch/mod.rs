@@ -5,6 +5,7 @@ mod life;
 mod part;
 pub mod phases;
 mod shaft;
+mod turns;
 
 use roulement::simulation::Simulation;
 use roulement::simulation::alarms::Alarm;
@@ -18,6 +19,7 @@ pub use life::Life;
 pub use part::PartSeen;
 pub use phases::{Extreme, Phase};
 pub use shaft::{ShaftSeen, ShaftWatch};
+pub use turns::PerTurn;
 
 use crate::error::Run;
 use crate::report::figures::Figures;

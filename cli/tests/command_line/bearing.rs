@@ -183,3 +183,55 @@ fn bearings_that_are_not_there_are_refused() {
         assert!(!output.status.success() && said.contains(part), "{said}\nshould have {part}");
     }
 }
+
+#[test]
+fn fits_by_words_are_told_at_their_ends_and_their_mean() {
+    let scratch = Scratch::new("fits");
+    let path = scratch.path("scene.toml");
+    let written = roulement(&["bearing", "6206", "--shaft-fit", "k6", "--housing-fit", "H7", "-o", &path]);
+    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    let solved = |path: &str| -> Value {
+        let output = roulement(&["equilibrium", "--json", path]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let all = solved(&path);
+    let fits = all["fits"].as_array().unwrap();
+    // Makers print 2 to 25 um of interference, and a gap of 0 to 43 um.
+    for (of, name, shaft, housing) in [
+        (&fits[0], "least", 2e-6, -43e-6),
+        (&fits[1], "mean", 13.5e-6, -21.5e-6),
+        (&fits[2], "greatest", 25e-6, 0.0),
+    ] {
+        assert_eq!(of["fits"], name);
+        let get = |ring: &str| of["interference"][ring].as_f64().unwrap();
+        assert!((get("inner") - shaft).abs() < 1e-12 && (get("outer") - housing).abs() < 1e-12, "{of}");
+    }
+    // Each is what the scene with that interference has.
+    let text = scratch.read("scene.toml");
+    for (of, shaft, housing) in [(&fits[0], 2e-6, -43e-6), (&fits[2], 25e-6, 0.0)] {
+        let given = text
+            .replace("fit = \"k6\"", &format!("interference = {shaft:e}"))
+            .replace("fit = \"H7\"", &format!("interference = {housing:e}"));
+        std::fs::write(scratch.path("given.toml"), given).unwrap();
+        let output =
+            roulement(&["equilibrium", "--json", "--gyroscopic", "friction", &scratch.path("given.toml")]);
+        let one: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let clearance = one["growth"]["clearance"].as_f64().unwrap();
+        assert!((of["clearance"].as_f64().unwrap() - clearance).abs() < 1e-12, "{of} {clearance}");
+        assert!(one.get("fits").is_none());
+    }
+    let words = roulement(&["equilibrium", &path]);
+    assert!(
+        String::from_utf8(words.stdout)
+            .unwrap()
+            .contains("  greatest       interference 25.0 um on the shaft")
+    );
+    // What is open moves the candidates, too.
+    let listed = roulement(&["bearing", "6206", "--shaft-fit", "k6", "--candidates"]);
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    assert!(listed.contains("growth.fits = greatest"), "{listed}");
+    let refused = roulement(&["bearing", "6206", "--shaft-fit", "K6"]);
+    assert!(!refused.status.success());
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("growth.shaft.fit"), "{refused:?}");
+}

@@ -119,6 +119,12 @@ fn workplace() -> Scratch {
     }
     let coupled = fs::read_to_string(root().join("examples/coupling/bearing.toml")).unwrap();
     write("examples/coupling/bearing.toml", &coupled);
+    for (sweep, duration) in [("dry_running", "\"400 ms\""), ("smearing", "\"100 ms\"")] {
+        let name = format!("examples/sweeps/{sweep}.toml");
+        let text = fs::read_to_string(root().join(&name)).unwrap();
+        assert!(text.contains(duration), "{text}");
+        write(&name, &text.replace(duration, "\"0.5 ms\""));
+    }
     fs::create_dir(scratch.path("build")).unwrap();
     write(
         "system.toml",

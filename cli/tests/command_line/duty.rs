@@ -147,3 +147,41 @@ fn loads_of_a_duty_that_cannot_be_read_are_named_before_anything_is_run() {
     }
     assert!(!std::path::Path::new(&scratch.path("results")).exists());
 }
+
+#[test]
+fn closed_form_a_duty_that_is_run_has_the_means_and_lives_of_its_runs() {
+    let scratch = Scratch::new("duty-runs");
+    let scene = rating::SCENE
+        .replace("duration = \"1 ms\"", "duration = \"40 ms\"")
+        .replace("output_interval = \"1 ms\"", "output_interval = \"0.2 ms\"");
+    std::fs::write(scratch.path("scene.toml"), format!("{scene}{LOADS}")).unwrap();
+    let output = roulement(&["rating", &scratch.path("scene.toml"), "--runs"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = String::from_utf8(output.stdout).unwrap();
+    let mut rows = csv::Reader::from_reader(table.as_bytes());
+    let heads = rows.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
+    let cell = |row: usize, name: &str| -> f64 {
+        rows[row][heads.iter().position(|head| head == name).unwrap()].parse().unwrap()
+    };
+    let text = scene.replace("\"1000 rpm\"", "\"1500 rpm\"");
+    std::fs::write(scratch.path("one.toml"), text).unwrap();
+    let one = json(&["run", &scratch.path("one.toml"), "-o", &scratch.path("one"), "--json"]);
+    let mean = |name: &str| {
+        let all = one["means"]["quantities"].as_array().unwrap_or_else(|| panic!("{}", one["means"]));
+        all.iter().find(|mean| mean["quantity"] == name).unwrap()["mean"].as_f64().unwrap()
+    };
+    // JSON is read here to 15 digits.
+    near(cell(1, "friction_torque [N m]"), mean("friction torque").abs(), 1e-12);
+    near(cell(1, "loss [W]"), mean("loss.total"), 1e-12);
+    near(cell(1, "L10r [1e6]"), one["life"]["L10r"].as_f64().unwrap(), 1e-12);
+    let damage: f64 = (0..3).map(|row| cell(row, "damage")).sum();
+    near(cell(3, "damage"), damage, 1e-9);
+    // What turns a bearing brings its losses, in runs and in statics.
+    let statics = roulement(&["rating", &scratch.path("scene.toml")]);
+    let statics = String::from_utf8(statics.stdout).unwrap();
+    let row = statics.lines().find(|line| line.starts_with("cruise")).unwrap();
+    let numbers: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+    near(numbers[10] * numbers[3] * std::f64::consts::PI / 30.0, numbers[11], 1e-12);
+    near(numbers[10], cell(1, "friction_torque [N m]"), 0.05);
+}

@@ -13,6 +13,7 @@ mod documents_run;
 mod duty;
 mod effects;
 mod field;
+mod help;
 mod means;
 mod modes;
 mod packages;

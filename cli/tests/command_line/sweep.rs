@@ -655,3 +655,99 @@ fn regression_a_sweep_has_the_warnings_of_its_runs() {
     let kept = scratch.read(&format!("out/runs/{}/summary.txt", summary["file"][2]));
     assert!(kept.contains("over shoulders "), "{kept}");
 }
+
+#[test]
+fn limits_of_columns_are_times_at_which_cases_come_there_first() {
+    let scratch = Scratch::new("sweep-limits");
+    // The speed goes from 100 to 200 rad/s within 10 ms.
+    let scene = edited(
+        "thrust",
+        &[
+            ("load.duration", "0.01"),
+            ("load.inner_speed", "[[0.0, 100.0], [0.01, 200.0]]"),
+            ("solver.max_step", "1e-5"),
+        ],
+    );
+    std::fs::write(scratch.path("scene.toml"), &scene.source).unwrap();
+    std::fs::write(scratch.path("cases.csv"), "friction.ball_race\n0.08\n").unwrap();
+    let sweep = |columns: &str| {
+        let cases = scratch.path("cases.csv");
+        roulement(&[
+            "sweep",
+            &cases,
+            "--scene",
+            &scratch.path("scene.toml"),
+            "--columns",
+            columns,
+            "-o",
+            &scratch.path("out"),
+        ])
+    };
+    let output = sweep("inner.angular_velocity.x>150,inner.angular_velocity.x<50,ball[*].inner.load>=1");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary = scratch.read("out/summary.csv");
+    let mut rows = csv::Reader::from_reader(summary.as_bytes());
+    let heads = rows.headers().unwrap().clone();
+    let row = rows.records().next().unwrap().unwrap();
+    let cell =
+        |name: &str| &row[heads.iter().position(|head| head == name).unwrap_or_else(|| panic!("{heads:?}"))];
+    let time: f64 = cell("inner.angular_velocity.x>150.time [s]").parse().unwrap();
+    // The end of the first step that goes beyond.
+    assert!((0.005..=0.00502).contains(&time), "{time}");
+    assert_eq!(cell("inner.angular_velocity.x<50.time [s]"), "");
+    assert_eq!(cell("ball[*].inner.load>=1.time [s]").parse::<f64>().unwrap(), 0.0);
+    for (wrong, says) in [("balls.slip<", "a limit is a column"), ("balls.slap<1", "no such column")] {
+        let output = sweep(wrong);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && message.contains(says), "{message}");
+    }
+}
+
+#[test]
+fn independent_slip_load_of_entering_balls_by_turns_is_that_of_the_table() {
+    let scratch = Scratch::new("sweep-smearing");
+    // 20 turns of the cage at 12000 rpm are 0.25 s: five of them.
+    let changes = [
+        ("load.duration", "0.06"),
+        ("load.output_interval", "1e-5"),
+        ("load.inner_speed", "\"12000 rpm\""),
+        ("load.y.force", "300.0"),
+        ("friction.ball_race", "0.01"),
+        ("solver.max_step", "1e-5"),
+    ];
+    std::fs::write(scratch.path("scene.toml"), edited("radial", &changes).source).unwrap();
+    let scene = scratch.path("scene.toml");
+    let output = roulement(&[
+        "run",
+        &scene,
+        "-o",
+        &scratch.path("run"),
+        "--json",
+        "--columns",
+        "cage.speed,balls.entering_slip_load",
+    ]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let of = |name: &str| summary["entering_slip_load"][name].as_f64().unwrap_or_else(|| panic!("{summary}"));
+    // By hand from rows: turns of the cage from the start on, the largest of each, those that begin in the second half.
+    let table = scratch.read("run/results.csv");
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let rows: Vec<Vec<f64>> =
+        reader.records().map(|row| row.unwrap().iter().map(|cell| cell.parse().unwrap()).collect()).collect();
+    let (mut turned, mut begin, mut largest, mut turns) = (0.0, 0.0, rows[0][2], vec![]);
+    for pair in rows.windows(2) {
+        turned += pair[1][1] * (pair[1][0] - pair[0][0]);
+        largest = f64::max(largest, pair[1][2]);
+        if turned >= std::f64::consts::TAU {
+            turns.push((begin, largest));
+            (turned, begin, largest) = (turned - std::f64::consts::TAU, pair[1][0], pair[1][2]);
+        }
+    }
+    let seen: Vec<f64> =
+        turns.iter().filter(|(begin, _)| *begin >= 0.03).map(|(_, largest)| *largest).collect();
+    assert!(seen.len() >= 2, "{turns:?}");
+    assert_eq!(of("turns") as usize, seen.len());
+    let mean = seen.iter().sum::<f64>() / seen.len() as f64;
+    assert!((of("mean") / mean - 1.0).abs() < 0.05, "{} {mean}", of("mean"));
+    assert!(of("largest") > 1.0);
+}

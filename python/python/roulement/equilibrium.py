@@ -35,6 +35,8 @@ class Equilibrium:
     """L10r and modified [1e6 revolutions], equivalent_load [N], static_safety [-]; None without `[rating]`."""
     duty: dict | None
     """Life over the `[[duty]]` of the scene, as `rating` gives it; None where it has none."""
+    fits: list | None
+    """Of fits that are given by words, a dictionary for `least`, `mean` and `greatest` interference each; None where there are none."""
     report: dict
     """All of it as the command line prints it (`--json`)."""
 
@@ -54,6 +56,8 @@ class MachineEquilibrium:
     """The same at every critical speed, with that speed [rad/s]."""
     duty: dict | None
     """Life over the `[[duty]]` of the scene, as `rating` gives it; None where it has none."""
+    fits: list | None
+    """Of bearings whose fits are given by words, a dictionary for `least`, `mean` and `greatest` interference each; None where there are none."""
     report: dict
     """All of it as the command line prints it (`--json`), with the Campbell table."""
 
@@ -80,21 +84,22 @@ def equilibrium(scene, gyroscopic=None):
         balls=SimpleNamespace(**{name: np.array(values) for name, values in report["balls"].items()}),
         life=SimpleNamespace(**report["life"]) if "life" in report else None,
         duty=report.get("duty"),
+        fits=report.get("fits"),
         report=report,
     )
 
 
-def rating(scene, loads=None):
+def rating(scene, loads=None, runs=False):
     """Life of bearings over the `[[duty]]` of a scene, or under the loads of a table, the path of a CSV or TOML file with a column `share`
-    and keys of the scene (docs/load-cases.md): an equilibrium under each load, added up by Miner's rule.
+    and keys of the scene (docs/load-cases.md): an equilibrium under each load, or with `runs` a run of its `load.duration`, added up by Miner's rule.
 
     A dictionary: `hours` of the whole duty, where its parts are hours; `loads`, a list with `name`, `share`, `bearings` and `machine` each; and what all loads
     come to, `bearings` and `machine`. A bearing, by its name (that of a bearing alone is empty), has `speed` [rad/s], `equivalent_load` [N], `L10r`
     and `modified` [1e6 revolutions], `L10r_hours` and `modified_hours` [h], `static_safety`, `friction_torque` [N m], `loss` [W], `damage` [-], and,
     under all loads, `worst`: the `load` that takes most of its life, and the part `taken`. Raises ValueError if a load is refused or there are none,
-    RuntimeError if one has no equilibrium.
+    RuntimeError if one has no equilibrium or its run fails.
     """
-    return json.loads(Scene.of(scene)._native.rating(None if loads is None else Path(loads)))
+    return json.loads(Scene.of(scene)._native.rating(None if loads is None else Path(loads), runs))
 
 
 def _of_machine(report):
@@ -113,5 +118,6 @@ def _of_machine(report):
         modes=[SimpleNamespace(**mode) for mode in report["modes"]],
         critical_speeds=[SimpleNamespace(**critical) for critical in report["critical_speeds"]],
         duty=report.get("duty"),
+        fits=report.get("fits"),
         report=report,
     )

@@ -20,6 +20,7 @@ class Equilibrium:
     balls: SimpleNamespace
     life: SimpleNamespace | None
     duty: dict[str, Any] | None
+    fits: list[dict[str, Any]] | None
     report: dict[str, Any]
 
 @dataclass(frozen=True)
@@ -29,10 +30,11 @@ class MachineEquilibrium:
     modes: list[SimpleNamespace]
     critical_speeds: list[SimpleNamespace]
     duty: dict[str, Any] | None
+    fits: list[dict[str, Any]] | None
     report: dict[str, Any]
 
 def equilibrium(
     scene: Scene | str | PathLike[str],
     gyroscopic: Literal["outer-race-control", "inner-race-control", "least-heat", "none", "friction"] | None = None,
 ) -> Equilibrium | MachineEquilibrium: ...
-def rating(scene: Scene | str | PathLike[str], loads: str | PathLike[str] | None = None) -> dict[str, Any]: ...
+def rating(scene: Scene | str | PathLike[str], loads: str | PathLike[str] | None = None, runs: bool = False) -> dict[str, Any]: ...

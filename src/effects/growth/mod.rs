@@ -6,6 +6,7 @@
 //! (`stiffening.rs`). Mass and inertia, ellipses and creep coefficients, pockets, and gaps between balls stay those of the cold
 //! bearing: they change by a thousandth in 100 K.
 
+mod fits;
 pub mod rings;
 mod section;
 mod stiffening;
@@ -21,6 +22,7 @@ use crate::schema::numbers::Number;
 use crate::schema::schedule::Schedule;
 use crate::schema::variable_units::{METRE, PASCAL, RADIAN, Unit};
 use crate::schema::{BearingSection, Material, SceneError};
+pub use fits::{RingClass, Within};
 use rings::{Cylinder, Fit, Seated};
 pub use section::{EXPANSION, Partner, RISE, Section, Settings};
 use stiffening::Stiffening;
@@ -104,7 +106,7 @@ impl Settings {
             stiffening: Stiffening::new(radius, &raceways[index], curvatures[index]),
             bottom: bottoms[index],
             expansion: race.thermal_expansion.0,
-            seat: partner.as_ref().map(|partner| Seat::new(index, partner, race, bottoms[index])),
+            seat: partner.as_ref().map(|partner| Seat::new((index, partner, section), race, bottoms[index])),
         };
         Some(Growth {
             ball_radius: radius,
@@ -130,7 +132,7 @@ struct Seat {
 
 impl Seat {
     /// Seat of the inner (0) or outer (1) ring, whose raceway has its bottom at a radius \[m].
-    fn new(index: usize, partner: &Partner, race: &Material, bottom: f64) -> Self {
+    fn new((index, partner, section): (usize, &Partner, &Section), race: &Material, bottom: f64) -> Self {
         let seat = 0.5 * partner.diameter.0;
         let ring = Cylinder {
             inside: seat.min(bottom),
@@ -154,7 +156,7 @@ impl Seat {
             if index == 0 { Fit { inner: other, outer: ring } } else { Fit { inner: ring, outer: other } };
         Self {
             ring,
-            fit: partner.left().map(|interference| (fit, interference)),
+            fit: partner.left(section).map(|interference| (fit, interference)),
             diameter: partner.diameter.0,
             expansion: partner.thermal_expansion.0,
         }
@@ -350,11 +352,7 @@ impl Effect for Settings {
     fn setting(&self) -> Option<String> {
         let [inner, outer, balls, ..] = self.rises(0.0)?;
         let fits = self.section.as_ref().map_or(0, |section| {
-            [&section.shaft, &section.housing]
-                .into_iter()
-                .flatten()
-                .filter(|p| p.interference.is_some())
-                .count()
+            [&section.shaft, &section.housing].into_iter().flatten().filter(|p| p.is_fitted()).count()
         });
         let fits = ["", ", one fit", ", two fits"][fits];
         let rotation =

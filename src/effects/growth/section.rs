@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::fits::{RingClass, Tolerance, Within};
 use crate::effects::effect::Setup;
 use crate::effects::keys::Keys;
 use crate::schema::numbers::{Number, POISSON_RATIO, Place, Range, YOUNGS_MODULUS};
@@ -20,7 +21,11 @@ impl Keys for Settings {}
 
 /// Temperatures over that of the given dimensions, and fits.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default, deny_unknown_fields, expecting = "a table of inner, outer, balls, rotation, shaft, housing")]
+#[serde(
+    default,
+    deny_unknown_fields,
+    expecting = "a table of inner, outer, balls, rotation, fits, ring_class, shaft, housing"
+)]
 pub struct Section {
     /// \[K] rise of the inner ring, constant or a table over time.
     #[serde(deserialize_with = "schedule::deserialize::<TemperatureRise, _>")]
@@ -33,6 +38,10 @@ pub struct Section {
     pub balls: Schedule,
     /// Do rings and what they are fitted to grow by their rotation?
     pub rotation: bool,
+    /// Where fits that are given by words are within their tolerances.
+    pub fits: Within,
+    /// Class of the dimensions of the rings (ISO 492), for such fits.
+    pub ring_class: RingClass,
     /// Seat of the inner ring: a shaft.
     pub shaft: Option<Partner>,
     /// Seat of the outer ring: a housing.
@@ -46,6 +55,9 @@ pub struct Partner {
     /// \[m] diametral interference of the fit at given dimensions; negative is a gap. Without it the ring is not held by its
     /// seat: it grows by its own temperature and rotation.
     pub interference: Option<Length>,
+    /// Tolerance of the seat in place of an interference: of a shaft such as "k6", of a housing such as "H7" (ISO 286-1). With that of the ring
+    /// it is one, by `growth.fits`.
+    pub fit: Option<String>,
     /// \[m] roughness Rz of ring and seat together: 0.8 of it are pressed flat, and lost to the interference (DIN 7190-1).
     pub roughness: Option<Length>,
     /// \[N] radial load that loosens an inner ring by `0.08 um (d/B F)^0.5`, d and B in mm, F in N, up to a quarter of C0 (NSK, Rolling Bearings);
@@ -81,6 +93,7 @@ impl Partner {
     pub(super) fn of_seat(diameter: f64) -> Self {
         Self {
             interference: None,
+            fit: None,
             roughness: None,
             radial_load: None,
             width: None,
@@ -95,9 +108,18 @@ impl Partner {
         }
     }
 
-    /// \[m] interference that surfaces and load leave of a fit; none without one, and gaps stay as they are.
-    pub(super) fn left(&self) -> Option<f64> {
-        let interference = self.interference?.0;
+    /// Is the ring held by it?
+    pub(super) fn is_fitted(&self) -> bool {
+        self.interference.is_some() || self.fit.is_some()
+    }
+
+    /// \[m] interference that surfaces and load leave of a fit in a section; none without one, and gaps stay as they are.
+    pub(super) fn left(&self, section: &Section) -> Option<f64> {
+        let of_words = |word: &String| {
+            let tolerance = Tolerance::read(word, self.diameter.0).ok()?;
+            tolerance.interference(self.diameter.0, section.ring_class, section.fits)
+        };
+        let interference = self.interference.map(|given| given.0).or(self.fit.as_ref().and_then(of_words))?;
         let flattened = FLATTENED * self.roughness.map_or(0.0, |roughness| roughness.0);
         let slenderness = self.width.map_or(0.0, |width| self.diameter.0 / width.0);
         let loosened = LOOSENED * (slenderness * self.radial_load.map_or(0.0, |load| load.0)).sqrt();
@@ -107,7 +129,7 @@ impl Partner {
 
     /// Part as cold as it is given, and without a fit.
     pub(super) fn cold(self) -> Self {
-        Self { interference: None, rise: Schedule::default(), ..self }
+        Self { interference: None, fit: None, rise: Schedule::default(), ..self }
     }
 }
 
@@ -324,8 +346,9 @@ impl Partner {
             Range::closed(bottom * (1.0 + LEAST_WALL), 1e3, "m")
         };
         range.check(&format!("{key}.diameter"), seat)?;
+        self.fit.as_deref().map_or(Ok(()), |word| self.fit_agrees(word, key, is_shaft))?;
         let lost = [("roughness", self.roughness.is_some()), ("radial_load", self.radial_load.is_some())];
-        if let Some((name, _)) = lost.iter().find(|(_, given)| *given && self.interference.is_none()) {
+        if let Some((name, _)) = lost.iter().find(|(_, given)| *given && !self.is_fitted()) {
             let why = "needed for what is lost of it: the interference of the fit";
             return Err(SceneError::conflict(format!("{key}.interference"), format!("{why} ({name})")));
         }
@@ -344,17 +367,31 @@ impl Partner {
             let bore = self.bore.map_or(0.0, |bore| bore.0);
             return Range::closed(0.0, seat * (1.0 - LEAST_WALL), "m").check(&format!("{key}.bore"), bore);
         }
-        match (self.outside, self.interference) {
+        match (self.outside, self.is_fitted()) {
             (Some(outside), _) => {
                 let range = Range::closed(seat * (1.0 + LEAST_WALL), 1e3, "m");
                 range.check(&format!("{key}.outside"), outside.0)
             }
-            (None, Some(_)) => {
+            (None, true) => {
                 let why = "needed with an interference: the housing's outside diameter";
                 Err(SceneError::conflict(format!("{key}.outside"), why))
             }
-            (None, None) => Ok(()),
+            (None, false) => Ok(()),
         }
+    }
+
+    /// Is a fit by words one of such a seat, and the only one?
+    fn fit_agrees(&self, word: &str, key: &str, is_shaft: bool) -> Result<(), SceneError> {
+        let tolerance = Tolerance::read(word, self.diameter.0);
+        let why = match tolerance {
+            _ if self.interference.is_some() => "give this or interference",
+            Err(allowed) => allowed,
+            Ok(tolerance) if !tolerance.is_of(usize::from(!is_shaft)) => {
+                "shafts have small letters, holes of housings capital ones"
+            }
+            Ok(_) => return Ok(()),
+        };
+        Err(SceneError::conflict(format!("{key}.fit"), format!("\"{word}\": {why}")))
     }
 }
 

@@ -193,5 +193,11 @@ impl Variables {
             let source = Source::Effect(row.get);
             self.add(row.name, row.unit, Causality::Output, row.nominal, row.description, source);
         }
+        if every_ball {
+            let description = "largest normal load times slip speed of a ball on its way into the load zone; 0 under thrust alone";
+            let source = Source::Bearing(|o| o.entering_slip_load);
+            let name = "balls.entering_slip_load";
+            self.add(name.into(), units::WATT, Causality::Output, 1.0, description.into(), source);
+        }
     }
 }
