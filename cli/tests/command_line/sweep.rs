@@ -683,7 +683,7 @@ fn limits_of_columns_are_times_at_which_cases_come_there_first() {
             &scratch.path("out"),
         ])
     };
-    let output = sweep("inner.angular_velocity.x>150,inner.angular_velocity.x<50,ball[*].inner.load>=1");
+    let output = sweep("inner.speed>150,inner.speed<50,ball[*].inner.load>=1");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let summary = scratch.read("out/summary.csv");
     let mut rows = csv::Reader::from_reader(summary.as_bytes());
@@ -691,10 +691,10 @@ fn limits_of_columns_are_times_at_which_cases_come_there_first() {
     let row = rows.records().next().unwrap().unwrap();
     let cell =
         |name: &str| &row[heads.iter().position(|head| head == name).unwrap_or_else(|| panic!("{heads:?}"))];
-    let time: f64 = cell("inner.angular_velocity.x>150.time [s]").parse().unwrap();
+    let time: f64 = cell("inner.speed>150.time [s]").parse().unwrap();
     // The end of the first step that goes beyond.
     assert!((0.005..=0.00502).contains(&time), "{time}");
-    assert_eq!(cell("inner.angular_velocity.x<50.time [s]"), "");
+    assert_eq!(cell("inner.speed<50.time [s]"), "");
     assert_eq!(cell("ball[*].inner.load>=1.time [s]").parse::<f64>().unwrap(), 0.0);
     for (wrong, says) in [("balls.slip<", "a limit is a column"), ("balls.slap<1", "no such column")] {
         let output = sweep(wrong);
@@ -706,13 +706,14 @@ fn limits_of_columns_are_times_at_which_cases_come_there_first() {
 #[test]
 fn independent_slip_load_of_entering_balls_by_turns_is_that_of_the_table() {
     let scratch = Scratch::new("sweep-smearing");
-    // 20 turns of the cage at 12000 rpm are 0.25 s: five of them.
+    // Balls that a medium holds back outside of the load zone, for seven turns of the cage.
     let changes = [
-        ("load.duration", "0.06"),
+        ("load.duration", "0.1"),
         ("load.output_interval", "1e-5"),
         ("load.inner_speed", "\"12000 rpm\""),
         ("load.y.force", "300.0"),
         ("friction.ball_race", "0.01"),
+        ("effects.ambient", "{ density = 60.0, viscosity = 2e-5 }"),
         ("solver.max_step", "1e-5"),
     ];
     std::fs::write(scratch.path("scene.toml"), edited("radial", &changes).source).unwrap();
@@ -744,10 +745,10 @@ fn independent_slip_load_of_entering_balls_by_turns_is_that_of_the_table() {
         }
     }
     let seen: Vec<f64> =
-        turns.iter().filter(|(begin, _)| *begin >= 0.03).map(|(_, largest)| *largest).collect();
+        turns.iter().filter(|(begin, _)| *begin >= 0.05).map(|(_, largest)| *largest).collect();
     assert!(seen.len() >= 2, "{turns:?}");
     assert_eq!(of("turns") as usize, seen.len());
     let mean = seen.iter().sum::<f64>() / seen.len() as f64;
     assert!((of("mean") / mean - 1.0).abs() < 0.05, "{} {mean}", of("mean"));
-    assert!(of("largest") > 1.0);
+    assert!(of("largest") > 5.0);
 }
