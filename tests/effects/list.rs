@@ -64,12 +64,12 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
     let base = names(&parse(OFF));
     let first_parameter = base.iter().position(|name| name == "bearing.ball_diameter").unwrap();
     // Effect, how many variables it adds, and how their names begin: 36 coefficients twice; of a cage without lands 22;
-    // of 10 balls 29 each; of neighbouring balls 4.
+    // of 10 balls 29 each, and what they meet where they enter the load zone; of neighbouring balls 4.
     let adding = [
         ("effects.stiffness_outputs", 72, &["stiffness.", "damping."][..]),
         ("effects.cage", 22, &["cage."]),
         ("effects.heathcote_slip", 1, &["power.groove"]),
-        ("effects.per_ball_outputs", 290, &["ball["]),
+        ("effects.per_ball_outputs", 291, &["ball[", "balls.entering_slip_load"]),
         ("effects.full_complement", 4, &["neighbours."]),
         ("effects.shoulder_outputs", 4, &["shoulder."]),
         ("effects.heat_outputs", 4, &["heat."]),
@@ -145,7 +145,7 @@ fn an_effect_that_is_on_adds_its_own_variables_before_the_parameters() {
                       inertia = [1e-5, 6e-6, 6e-6]\npocket_clearance = 2e-4\nguided_by = \"balls\"\n",
     );
     let on = names(&both);
-    assert_eq!(on.len(), base.len() + losses.len() + 22 + 10 * (29 + 6) + 5 + 1);
+    assert_eq!(on.len(), base.len() + losses.len() + 22 + 10 * (29 + 6) + 1 + 5 + 1);
     assert_eq!(on.iter().filter(|name| name.contains("].pocket.")).count(), 60);
     assert_eq!(on.iter().collect::<BTreeSet<_>>().len(), on.len(), "names are unique");
 }

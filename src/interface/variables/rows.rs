@@ -197,7 +197,8 @@ impl Variables {
             let description = "largest normal load times slip speed of a ball on its way into the load zone; 0 under thrust alone";
             let source = Source::Bearing(|o| o.entering_slip_load);
             let name = "balls.entering_slip_load";
-            self.add(name.into(), units::WATT, Causality::Output, 1.0, description.into(), source);
+            // No output: the largest of many has no derivative where another becomes the largest.
+            self.add(name.into(), units::WATT, Causality::Local, 1.0, description.into(), source);
         }
     }
 }
