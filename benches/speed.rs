@@ -165,9 +165,10 @@ fn equilibrium_solve(bencher: Bencher) {
     bencher.bench_local(|| equilibrium::solve(&model, &input).unwrap().iterations);
 }
 
-/// Force of a bearing of 17 rollers that slowly turn: without ribs, between ribs under a thrust, and tapered.
-#[divan::bench(args = ["N", "NUP", "tapered"])]
-fn rollers(bencher: Bencher, kind: &str) {
+/// Force of a bearing of 17 rollers that slowly turn: without ribs, between ribs under a thrust, and tapered. Sought from nothing, or from where a step left
+/// them that moved the shaft by 0.2 um.
+#[divan::bench(args = [("N", false), ("N", true), ("NUP", false), ("NUP", true), ("tapered", false), ("tapered", true)])]
+fn rollers(bencher: Bencher, (kind, known): (&str, bool)) {
     let taper = Taper { contact_angle: 0.245, roller_angle: 0.07, direction: 1.0 };
     let geometry = Geometry {
         count: 17,
@@ -185,7 +186,9 @@ fn rollers(bencher: Bencher, kind: &str) {
     let bearing = Rollers::new(geometry, None);
     let displaced = Vector6::new(20e-6, 25e-6, 5e-6, 0.0, 2e-4, -1e-4);
     let turning = Vector6::ith(3, 10.0);
-    bencher.bench_local(|| bearing.force(divan::black_box(&displaced), &turning));
+    let before = displaced + Vector6::new(1e-7, -1e-7, 1e-7, -0.001, 0.0, 0.0);
+    let left = if known { bearing.leave(&before, &turning, &[]).1 } else { vec![] };
+    bencher.bench_local(|| bearing.force_near(divan::black_box(&displaced), &turning, &left));
 }
 
 /// 10 ms of the thrust case at a step cap of 1e-5 s: 1000 steps an iteration, so 1 ms here is 0.1 s per simulated s.

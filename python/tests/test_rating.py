@@ -62,9 +62,9 @@ def _shares(folder):
 
 def test_a_duty_that_is_run_has_the_torque_of_its_runs(tmp_path):
     text = SCENE.replace('duration = "1 ms"', 'duration = "30 ms"')
-    rated = roulement.rating(roulement.Scene(text), runs=True)
+    rated = roulement.rating(roulement.Scene.parse(text), runs=True)
     cruise = next(load for load in rated["loads"] if load["name"] == "cruise")["bearings"][""]
-    run = roulement.run(roulement.Scene(text).with_({"load.inner_speed": "1500 rpm"}))
+    run = roulement.run(roulement.Scene.parse(text).with_({"load.inner_speed": "1500 rpm"}))
     torque = next(mean["mean"] for mean in run.summary["means"]["quantities"] if mean["quantity"] == "friction torque")
     assert cruise["friction_torque"] == pytest.approx(abs(torque), rel=1e-12)
     assert cruise["friction_torque"] > 0.0
@@ -72,7 +72,7 @@ def test_a_duty_that_is_run_has_the_torque_of_its_runs(tmp_path):
 
 def test_fits_by_words_tell_three_clearances():
     fitted = {"growth.shaft": {"fit": "k6", "diameter": 0.03}, "growth.housing": {"fit": "N7", "diameter": 0.062, "outside": 0.09}}
-    fits = roulement.equilibrium(roulement.Scene(SCENE).with_(fitted)).fits
+    fits = roulement.equilibrium(roulement.Scene.parse(SCENE).with_(fitted)).fits
     assert [of["fits"] for of in fits] == ["least", "mean", "greatest"]
     assert fits[0]["clearance"] > fits[1]["clearance"] > fits[2]["clearance"]
-    assert roulement.equilibrium(roulement.Scene(SCENE)).fits is None
+    assert roulement.equilibrium(roulement.Scene.parse(SCENE)).fits is None

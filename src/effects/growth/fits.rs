@@ -102,7 +102,7 @@ impl Tolerance {
         let of = range(diameter).ok_or(ALLOWED)?;
         let grade: usize = Some(grade).filter(|grade| (4..=8).contains(grade)).ok_or(ALLOWED)?;
         let [finer, width] = [grade - 4, grade - 3].map(|row| f64::from(GRADES[row][of]));
-        let hole = letters.chars().all(char::is_uppercase);
+        let hole = letters.chars().all(|letter: char| letter.is_ascii_uppercase());
         let lower = letters.to_ascii_lowercase();
         if !hole && lower != letters {
             return Err(ALLOWED);
@@ -208,7 +208,7 @@ mod tests {
             for (ours, theirs) in found.deviations.into_iter().zip(printed) {
                 assert!((1e6 * ours - theirs).abs() < 1e-9, "{word} {millimetres}: {found:?}");
             }
-            assert!(found.is_of(usize::from(word.starts_with(char::is_uppercase))));
+            assert!(found.is_of(usize::from(word.starts_with(|letter: char| letter.is_ascii_uppercase()))));
         }
         for word in ["", "k", "6", "kk6", "Js6", "h9", "h3", "j8", "J5", "é6", "k66", "H"] {
             assert!(Tolerance::read(word, 0.03).is_err(), "{word}");

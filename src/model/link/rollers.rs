@@ -259,8 +259,7 @@ impl Rollers {
 
     /// The same, with rollers sought from where they were left.
     pub fn force_near(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, left: &[Left]) -> LinkForce {
-        let [centrifugal, _] = self.centrifugal(rate[3]);
-        self.sum(displacement, rate, self.each(&(displacement - self.rest), centrifugal, left))
+        self.sum((displacement, rate), left, &mut |_| {})
     }
 
     /// The same, and where rollers are then.
@@ -270,30 +269,24 @@ impl Rollers {
         rate: &Vector6<f64>,
         left: &[Left],
     ) -> (LinkForce, Vec<Left>) {
-        let [centrifugal, _] = self.centrifugal(rate[3]);
         let mut now = Vec::with_capacity(self.geometry.count);
-        let d = displacement - self.rest;
-        let each = self.each(&d, centrifugal, left);
-        let on = self.sum(
-            displacement,
-            rate,
-            each.inspect(|Seen { moved, settled, .. }| now.push(Left { place: settled.place, race: *moved })),
-        );
+        let on = self.sum((displacement, rate), left, &mut |roller| now.push(roller));
         (on, now)
     }
 
-    /// Force and moment of all rollers on the shaft, and what dampers add.
+    /// Force and moment of all rollers on the shaft, and what dampers add; `see` is told of where each roller is.
     fn sum(
         &self,
-        displacement: &Vector6<f64>,
-        rate: &Vector6<f64>,
-        each: impl Iterator<Item = Seen>,
+        (displacement, rate): (&Vector6<f64>, &Vector6<f64>),
+        left: &[Left],
+        see: &mut dyn FnMut(Left),
     ) -> LinkForce {
         let d = displacement - self.rest;
         let orbit = 0.5 * self.geometry.pitch_diameter;
-        let [_, by_rate] = self.centrifugal(rate[3]);
+        let [centrifugal, by_rate] = self.centrifugal(rate[3]);
         let mut on = LinkForce::none();
-        for Seen { cosine: c, sine: s, moved, settled } in each {
+        for Seen { cosine: c, sine: s, moved, settled } in self.each(&d, centrifugal, left) {
+            see(Left { place: settled.place, race: moved });
             // Motion of a race in the plane by the displacement, and the same by the azimuth.
             let plane = |c: f64, s: f64| {
                 Matrix3x6::from_rows(&[
