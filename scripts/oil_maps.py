@@ -52,7 +52,7 @@ def smearing(rows):
     at = lambda speed, load, column: float(next(row for row in rows if of(row) == (speed, load))[column])
     for load in loads:
         powers = " / ".join(f"{at(speed, load, 'entering_slip_load.per_turn'):.1f}" for speed in speeds)
-        slips = " / ".join(f"{100 * at(speed, load, 'balls.slip.mean'):.1f}" for speed in speeds)
+        slips = " / ".join(f"{round(100 * at(speed, load, 'balls.slip.mean'), 1) + 0.0:.1f}" for speed in speeds)
         yield f"| {load} | {powers} | {slips} |"
 
 

@@ -8,7 +8,7 @@ use roulement::simulation::Simulation;
 use thiserror::Error;
 
 use crate::duty::rated::{speed, torque_of_losses};
-use crate::fits::WITHIN;
+use crate::fits::{WITHIN, by_words};
 use crate::sweep::all::on_threads;
 
 /// [-] error in both load ratings beyond that of the best candidate up to which another one is likely, too: a ball more or less.
@@ -160,10 +160,7 @@ fn cases(
             cases.push(Case { input: "balls", value: other.to_string(), scene });
         }
     }
-    let fits = base.effects.growth.section.as_ref().filter(|growth| {
-        [&growth.shaft, &growth.housing].into_iter().flatten().any(|seat| seat.fit.is_some())
-    });
-    if let Some(growth) = fits {
+    if let Some(growth) = base.effects.growth.section.as_ref().filter(|growth| by_words(growth)) {
         for (name, _) in WITHIN.into_iter().filter(|(_, within)| *within != growth.fits) {
             let scene = Scene::edited(&base.source, [("growth.fits", format!("\"{name}\"").as_str())])?;
             cases.push(Case { input: "growth.fits", value: name.to_owned(), scene });

@@ -4,10 +4,9 @@ use std::fmt;
 
 use roulement::effects::growth::{Section, Within};
 use roulement::scene::machine::MachineScene;
-use roulement::simulation::machine::Machine;
 use serde_json::{Value, json};
 
-use crate::duty::rated::{Rated, found};
+use crate::duty::rated::{Rated, found, with_lives};
 use crate::sweep::all::on_threads;
 
 /// Ends of the tolerances and their mean, with their names.
@@ -40,7 +39,7 @@ pub fn with_fits(mut report: Value, fits: Option<&Fits>) -> Value {
 pub struct Fits(Vec<Fitted>);
 
 /// Does a section have a fit by words?
-fn by_words(section: &Section) -> bool {
+pub fn by_words(section: &Section) -> bool {
     [&section.shaft, &section.housing].into_iter().flatten().any(|seat| seat.fit.is_some())
 }
 
@@ -68,13 +67,8 @@ impl Fits {
         }
         let look = |index: usize| {
             let (name, within) = WITHIN[index];
-            let mut scene = at(scene, within);
-            scene.bearings_mut().for_each(|bearing| {
-                bearing.effects.rating.section.get_or_insert_default();
-            });
-            let failed = |why: &dyn fmt::Display| format!("fits at their {name}: {why}");
-            scene.check().map_err(|why| failed(&why))?;
-            let machine = Machine::new(&scene).map_err(|why| failed(&why))?;
+            let failed = |why| format!("fits at their {name}: {why}");
+            let (scene, machine) = with_lives(at(scene, within)).map_err(failed)?;
             let rated = found(&scene, &machine, 1.0);
             let fitted = machine.bearings().filter_map(|(own, bearing)| {
                 let growth = bearing.outputs().growth?;

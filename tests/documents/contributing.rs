@@ -55,14 +55,27 @@ fn room(folder: &Path) -> Vec<Row> {
     rows
 }
 
+/// Does the manifest of the crate that a program of tests belongs to name it? One that it does not name is not compiled.
+fn is_compiled(program: &Path) -> bool {
+    let crate_of_tests = Path::new(roulement_tests::ROOT).join("tests");
+    // Cargo finds those of others by itself.
+    program.strip_prefix(&crate_of_tests).map_or(true, |file| {
+        let manifest = fs::read_to_string(crate_of_tests.join("Cargo.toml")).unwrap();
+        manifest.lines().any(|line| line == format!("path = \"{}\"", file.display()))
+    })
+}
+
 #[test]
 fn contributing_lists_all_files_of_tests() {
     let mut rows = vec![];
     for tests in ["tests", "cli/tests"] {
         for path in inside(&Path::new(roulement_tests::ROOT).join(tests)) {
-            if path.join("main.rs").exists() {
+            let head = path.join("main.rs");
+            if head.exists() {
+                assert!(is_compiled(&head), "tests/Cargo.toml does not name {}", head.display());
                 rows.extend(room(&path));
             } else if path.is_file() {
+                assert!(is_compiled(&path), "tests/Cargo.toml does not name {}", path.display());
                 rows.push(entry(&path, &path));
             }
         }

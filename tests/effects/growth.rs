@@ -519,7 +519,7 @@ fn closed_form_interference_that_surfaces_and_load_take() {
 }
 
 /// Tables of fits that makers print for a bore of 30 mm and an outside diameter of 62 mm, shaft tolerance and housing tolerance against normal ones of
-/// the bearing: a run has the bits of the interference itself.
+/// the bearing: the clearance is that of the interference itself, to rounding.
 #[test]
 fn published_fits_by_words_are_their_interferences() {
     let fitted = |ring: &str, seat: &str, changes: Changes<'_>| {

@@ -13,6 +13,8 @@ use roulement::quasi_static::bearing::{Balls, Rested, RingMotion};
 use roulement::quasi_static::rings::Placed;
 use roulement::scene::Scene;
 
+use crate::random::Random;
+
 /// A deep groove bearing like 6206, and an angular contact one like 7206 B.
 const DEEP_GROOVE: &str =
     "balls = 9\nball_diameter = \"9.525 mm\"\npitch_diameter = \"46 mm\"\ndiametral_clearance = ";
@@ -290,11 +292,8 @@ fn invariant_what_rings_do_along_any_way_is_stored() {
 #[test]
 fn invariant_a_ball_is_found_from_anywhere_and_in_one_place() {
     let groove = |arc: f64, stiffness: f64| Groove { arc, stiffness };
-    let mut state = 12345u64;
-    let mut random = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut source = Random::new(12345);
+    let mut random = || source.unit();
     for _ in 0..20_000 {
         let arcs = [0.19e-3, 0.28e-3];
         let centrifugal = [0.0, 1e-6, 1e-2, 5.0, 200.0][(5.0 * random()) as usize];

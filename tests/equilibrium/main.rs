@@ -8,6 +8,8 @@ mod guess;
 mod gyroscopic;
 #[path = "../common/mechanics.rs"]
 mod mechanics;
+#[path = "../common/random.rs"]
+mod random;
 #[path = "../common/reference.rs"]
 mod reference;
 mod reference_cases;

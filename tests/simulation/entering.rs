@@ -63,6 +63,7 @@ fn independent_slip_load_is_that_of_the_velocities_of_both_surfaces() {
     let mut largest: f64 = 0.0;
     for of in outputs(&scene(&[])) {
         let by_hand = by_hand(&of);
+        // Contacts by hand lie on the radius: no approach, no contact angle, no middle of both surfaces.
         let far = (of.entering_slip_load - by_hand).abs();
         assert!(far <= 0.02 * by_hand.max(0.1), "{} {by_hand} at {}", of.entering_slip_load, of.time);
         largest = largest.max(by_hand);

@@ -1,15 +1,40 @@
-//! `roulement scene`: what may stand in a scene file.
+//! `roulement scene`: what may stand in a scene file, and in other files.
 
 use std::error::Error;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::say;
 
 /// The reference of scenes, written from the structs that read them.
 const REFERENCE: &str = include_str!("../../../docs/scene.md");
-/// Keys of a scene for editors.
-const SCHEMA: &str = include_str!("../../../docs/scene.schema.json");
+
+/// Files that editors have a schema of.
+#[derive(Clone, Copy, ValueEnum)]
+enum File {
+    /// The scene of one bearing.
+    Bearing,
+    /// Shafts with their bearings.
+    Machine,
+    /// A catalogue of one's own, catalogue.toml.
+    Shelf,
+    /// Cases of a scene.
+    Sweep,
+    /// Connected packages.
+    System,
+}
+
+impl File {
+    fn schema(self) -> &'static str {
+        match self {
+            Self::Bearing => include_str!("../../../docs/scene.schema.json"),
+            Self::Machine => include_str!("../../../docs/machine.schema.json"),
+            Self::Shelf => include_str!("../../../docs/shelf.schema.json"),
+            Self::Sweep => include_str!("../../../docs/sweep.schema.json"),
+            Self::System => include_str!("../../../docs/system.schema.json"),
+        }
+    }
+}
 
 /// Options of `roulement scene`.
 #[derive(Args)]
@@ -18,9 +43,9 @@ pub struct Options {
     /// Print every key with its meaning, unit, values and default; of a word, those sections and keys that have it in their name.
     #[arg(long, num_args = 0..=1, default_missing_value = "", value_name = "WORD")]
     keys: Option<String>,
-    /// Print a JSON schema: editors complete and check scenes by it.
-    #[arg(long)]
-    schema: bool,
+    /// Print a JSON schema, by which editors complete and check files: of the scene of a bearing, or of another kind of files.
+    #[arg(long, num_args = 0..=1, default_missing_value = "bearing", value_name = "KIND")]
+    schema: Option<File>,
     /// Print the units that numbers of a scene may have: of every dimension, and every known unit with its size in SI.
     #[arg(long)]
     units: bool,
@@ -34,8 +59,12 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     if options.units {
         return Ok(say(units())?);
     }
-    match &options.keys {
-        None => Ok(say(SCHEMA)?),
+    if let Some(kind) = options.schema {
+        return Ok(say(kind.schema())?);
+    }
+    match options.keys.as_ref() {
+        // One of them is there.
+        None => Ok(()),
         Some(word) if word.is_empty() => Ok(say(REFERENCE)?),
         Some(word) => match about(&word.to_lowercase()) {
             text if text.is_empty() => Err(format!(

@@ -14,13 +14,12 @@ pub mod say;
 
 use roulement::effects::rating::life_of_all;
 use roulement::scene::machine::MachineScene;
-use roulement::simulation::machine::Machine;
 use thiserror::Error;
 
 use crate::sweep::SweepError;
 use crate::sweep::all::on_threads;
 use loads::{Duty, Load};
-use rated::{Rated, found, together};
+use rated::{Rated, found, together, with_lives};
 
 /// Why a duty has no rating.
 #[derive(Debug, Error)]
@@ -179,16 +178,11 @@ impl OfMachine {
 
 /// Every bearing under a load.
 fn under(load: &Load, whole: f64, from: &str, by_runs: bool) -> Result<UnderLoad, DutyError> {
-    let mut scene = load.scene.clone();
-    scene.bearings_mut().for_each(|bearing| {
-        bearing.effects.rating.section.get_or_insert_default();
-    });
-    let failed = |why: &dyn std::fmt::Display| DutyError::Load(format!("{from}{}: {why}", load.name));
-    scene.check().map_err(|why| failed(&why))?;
-    let machine = Machine::new(&scene).map_err(|why| failed(&why))?;
+    let failed = |why: String| DutyError::Load(format!("{from}{}: {why}", load.name));
+    let (scene, machine) = with_lives(load.scene.clone()).map_err(failed)?;
     let share = load.part / whole;
     let (bearings, settled) = match by_runs {
-        true => in_runs::found(&scene, machine, share).map_err(|why| failed(&why))?,
+        true => in_runs::found(&scene, machine, share).map_err(failed)?,
         false => (found(&scene, &machine, share), true),
     };
     Ok(UnderLoad { name: load.name.clone(), part: load.part, bearings, unsettled: !settled })

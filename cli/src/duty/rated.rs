@@ -50,6 +50,19 @@ pub fn found(scene: &MachineScene, machine: &Machine, share: f64) -> Vec<(String
     balls.chain(of_rollers(scene, machine, share)).collect()
 }
 
+/// A machine all of whose bearings have a life, with its scene.
+///
+/// # Errors
+/// If it has no equilibrium; says why.
+pub fn with_lives(mut scene: MachineScene) -> Result<(MachineScene, Machine), String> {
+    scene.bearings_mut().for_each(|bearing| {
+        bearing.effects.rating.section.get_or_insert_default();
+    });
+    scene.check().map_err(|why| why.to_string())?;
+    let machine = Machine::new(&scene).map_err(|why| why.to_string())?;
+    Ok((scene, machine))
+}
+
 /// [N m] torque that brings the losses of a bearing at its speed; 0 where it stands. At the start of a run its balls are in balance with their loads,
 /// but not yet with friction along their orbits: what speeds them up or slows them down is in the moment on the races of that instant, and
 /// in none of the torque that lasts.

@@ -1,4 +1,5 @@
-//! Fits by the words of drawings: tolerances of shafts and holes (ISO 286-1), and of the rings of radial bearings (ISO 492).
+//! Fits by the words of drawings: tolerances of shafts and holes (ISO 286-1), and of the rings of radial bearings (ISO 492). The tables are
+//! recalled, without the standards at hand; fits that makers print for one bearing agree (tests).
 
 use serde::Deserialize;
 

@@ -10,6 +10,7 @@
 mod force;
 pub mod force_table;
 pub mod gear_pair;
+mod line;
 pub mod one_sided;
 pub mod roller;
 pub mod rollers;

@@ -13,23 +13,19 @@
 //! together: `V` has one minimum over `q`, and Newton's method with a line search cannot miss it. The force on the inner race is `-dV/dp`, its
 //! stiffness that of both races in series, `H_i - H_i (H_i + H_o)^-1 H_i`. Without centrifugal force and ribs a roller is midway, `q = p/2`, at once.
 
-use std::array::from_fn;
-
 use nalgebra::{Cholesky, Const, Matrix3, Vector3};
 
+pub use super::line::Profile;
+use super::line::{POWER, Stations, gauss, sums};
 use super::one_sided::OneSided;
-use crate::numerics::elementary::{ln, pow};
+use crate::numerics::elementary::pow;
 
-/// [-] power of the approach of a line contact, and that of its stiffness.
-const POWER: f64 = 10.0 / 9.0;
 /// [N/mm^(10/9) mm^(8/9)] load of a roller of steel between two races over `l^(8/9) d^(10/9)` (ISO/TS 16281: 2008, 6.2); of one contact, whose
 /// approach is a half, 2^(10/9) of that.
 const LINE: f64 = 35948.0;
 /// Stations along a line, those of Gauss: forces of a bearing are those of 400 to 1e-3, and to 4e-3 at a tilt of 10 mrad (`order_` in
 /// `tests/equilibrium/rollers.rs`). As many laminae of one length are no better, and edges of partly loaded lines no point suits.
 const STATIONS: usize = 16;
-/// Stations that are taken at a time.
-const LANES: usize = 4;
 /// Iterations of one roller.
 const MAX_ITERATIONS: u32 = 100;
 /// [-] part of a line that carries where next to nothing presses it, a guess.
@@ -53,81 +49,6 @@ const NOTHING: f64 = 1e-9;
 const ROUND_OFF_UNITS: f64 = 16.0;
 /// [-] stiffness over the largest one that holds what nothing holds: a roller between ribs with play.
 const NO_STIFFNESS: f64 = 1e-13;
-
-/// How the line of a roller falls off towards its ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Profile {
-    /// Not at all.
-    Straight,
-    /// By a logarithm (ISO/TS 16281: 2008).
-    Logarithmic,
-    /// As a circle of this radius \[m].
-    Crowned(f64),
-}
-
-impl Profile {
-    /// \[m] drop at a place \[m] along a roller from its middle.
-    pub fn drop(self, place: f64, diameter: f64, length: f64) -> f64 {
-        match self {
-            Self::Straight => 0.0,
-            Self::Crowned(radius) => 0.5 * place * place / radius,
-            Self::Logarithmic => {
-                // Long rollers are straight but for the length of 2.5 diameters.
-                let (factor, straight) = match length - 2.5 * diameter {
-                    long if long > 0.0 => (0.0005, long),
-                    _ => (0.00035, 0.0),
-                };
-                let part = ((2.0 * place.abs() - straight) / (length - straight)).max(0.0);
-                -factor * diameter * ln(1.0 - part * part)
-            }
-        }
-    }
-}
-
-/// Stations of the lines of a roller, by fours: what is done with them is done with four numbers at a time. Those that fill up the last four never
-/// touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Stations {
-    /// \[m] places along the roller.
-    place: [f64; LANES],
-    /// [-] shares of the load.
-    share: [f64; LANES],
-    /// \[m] drop of the profile.
-    drop: [f64; LANES],
-}
-
-impl Stations {
-    /// Place \[m], share and drop \[m] of each.
-    fn all(stations: &[[f64; 3]]) -> Vec<Self> {
-        let of = |four: &[[f64; 3]]| {
-            let number = |k: usize, none: f64| from_fn(|lane| four.get(lane).map_or(none, |of| of[k]));
-            Self { place: number(0, 0.0), share: number(1, 0.0), drop: number(2, f64::INFINITY) }
-        };
-        stations.chunks(LANES).map(of).collect()
-    }
-}
-
-/// Sums over stations at an approach \[m] in the middle of the line that changes by a `lean` along it, over the stiffness of the line: load, its couple
-/// about the middle, their derivatives by approach and lean (three), energy over 9/19.
-#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
-fn sums(stations: &[Stations], way: f64, lean: f64) -> [f64; 6] {
-    let mut sums = [[0.0; LANES]; 6];
-    for of in stations {
-        let approach: [f64; LANES] = from_fn(|k| larger_than_zero(way + lean * of.place[k] - of.drop[k]));
-        let roots = ninth_roots(approach);
-        for k in 0..LANES {
-            let root = if approach[k] > 0.0 { of.share[k] * roots[k] } else { 0.0 };
-            let (own, slope, place) = (root * approach[k], POWER * root, of.place[k]);
-            sums[0][k] += own;
-            sums[1][k] += own * place;
-            sums[2][k] += slope;
-            sums[3][k] += slope * place;
-            sums[4][k] += slope * place * place;
-            sums[5][k] += own * approach[k];
-        }
-    }
-    sums.map(|[a, b, c, d]| (a + b) + (c + d))
-}
 
 /// The line along which a roller touches a race.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -361,17 +282,11 @@ impl Roller {
         }
         let outer = &self.lines[1];
         let along = outer.normal.x * rest.x;
-        let touches =
-            self.each_station().map(|[place, drop]| outer.gap + drop - along - outer.side * rest.z * place);
+        let touches = Stations::each(&self.stations)
+            .map(|[place, drop]| outer.gap + drop - along - outer.side * rest.z * place);
         let first = touches.fold(f64::INFINITY, f64::min);
         rest.y = (first + pow(centrifugal / (FEW * outer.stiffness), 1.0 / POWER)) / outer.normal.y;
         rest
-    }
-
-    /// \[m] place of each station, and drop there.
-    fn each_station(&self) -> impl Iterator<Item = [f64; 2]> {
-        let each = |of: &Stations| from_fn::<_, LANES, _>(|k| [of.place[k], of.drop[k]]);
-        self.stations.iter().flat_map(each)
     }
 
     /// [-] part of a step on which nothing touches that did not before: so far its fall is the expected one.
@@ -385,7 +300,7 @@ impl Roller {
         };
         for (race, line) in self.lines.iter().enumerate() {
             let (gap, way) = (line.gap - line.normal.dot(&moved[race]), line.normal.dot(step));
-            for [place, drop] in self.each_station() {
+            for [place, drop] in Stations::each(&self.stations) {
                 let lever = line.side * place;
                 comes_in(gap + drop - lever * moved[race].z, way + lever * step.z);
             }
@@ -419,47 +334,4 @@ impl Roller {
             (way - drop).max(0.0)
         })
     }
-}
-
-/// A number, or 0 where it is below.
-#[inline(always)]
-fn larger_than_zero(x: f64) -> f64 {
-    if x > 0.0 { x } else { 0.0 }
-}
-
-/// Ninth roots of normal numbers above 0: first guesses by their exponents, to 1 %, then three steps of Halley, each of which cubes the error. To the last
-/// bits, in sums, products and quotients alone. Where a number is 0, something finite.
-#[inline(always)]
-fn ninth_roots(x: [f64; LANES]) -> [f64; LANES] {
-    const BIAS: u64 = 1023 << 52;
-    let mut roots = x.map(|x| f64::from_bits(x.to_bits() / 9 + BIAS / 9 * 8));
-    for _ in 0..3 {
-        roots = from_fn(|k| {
-            let (root, x) = (roots[k], x[k]);
-            let cube = root * root * root;
-            let power = cube * cube * cube;
-            root * ((4.0 * power + 5.0 * x) / (5.0 * power + 4.0 * x))
-        });
-    }
-    roots
-}
-
-/// Points of Gauss between -1 and 1, with their weights: roots of Legendre's polynomial.
-fn gauss(count: usize) -> Vec<[f64; 2]> {
-    let n = count as f64;
-    let of = |k: usize| {
-        let mut x = -(std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..20 {
-            let (mut before, mut value) = (1.0, x);
-            for order in 2..=count {
-                let j = order as f64;
-                (before, value) = (value, ((2.0 * j - 1.0) * x * value - (j - 1.0) * before) / j);
-            }
-            slope = n * (x * value - before) / (x * x - 1.0);
-            x -= value / slope;
-        }
-        [x, 2.0 / ((1.0 - x * x) * slope * slope)]
-    };
-    (0..count).map(of).collect()
 }

@@ -188,6 +188,35 @@ impl Reference {
         }
     }
 
+    /// The schema of a struct of a file, with all that is in it.
+    pub fn object_of(&self, name: &str, file: &str) -> Value {
+        let place = self.sources.iter().position(|source| source.path.ends_with(file)).unwrap();
+        self.object(place, &self.sources[place].sections[name].clone())
+    }
+
+    fn object(&self, place: usize, section: &Section) -> Value {
+        let mut properties = json!({});
+        for field in section.fields.iter().filter(|field| !field.skipped) {
+            let kind = plain(&field.kind);
+            let mut own = self.key(place, section, field, &[]).schema;
+            if let Some((place, inside)) = self.section(place, &kind) {
+                let description = own["description"].take();
+                own = self.object(place, &inside);
+                if kind.several.is_some() {
+                    own = json!({ "type": "array", "items": own });
+                }
+                own["description"] = description;
+            }
+            properties[&field.name] = own;
+        }
+        json!({
+            "type": "object",
+            "additionalProperties": false,
+            "description": meaning(&section.doc).replace("\\[", "["),
+            "properties": properties,
+        })
+    }
+
     fn key(&self, place: usize, section: &Section, field: &Field, names: &[String]) -> Key {
         let kind = plain(&field.kind);
         let dimension = [field.quantity.clone(), kind.argument.clone(), Some(kind.name.clone())]
@@ -234,6 +263,7 @@ impl Reference {
             choices.map(|(_, variants)| variants.into_iter().map(|(name, _)| name).collect::<Vec<_>>());
         let mut schema = match (kind.name.as_str(), names) {
             ("bool", _) => json!({ "type": "boolean" }),
+            ("DirectionMatrix", _) => json!({ "type": "array" }),
             ("CageKind", _) => json!({ "enum": [true, false, "ideal", "none"] }),
             ("String", _) => json!({ "type": "string" }),
             ("Table", _) => json!({ "type": "object" }),

@@ -1,8 +1,9 @@
-//! Writes and checks docs/scene.md and docs/scene.schema.json, the reference of scenes: every key with its meaning, unit, default and
+//! Writes and checks docs/scene.md and the schemas for editors beside it, the reference of scenes: every key with its meaning, unit, default and
 //! range. Meanings, types and defaults are those of the structs that scenes are read by; ranges those of the refusals that a user gets.
 //! `scripts/tables` writes it.
 
 mod keys;
+mod others;
 mod page;
 mod sources;
 mod units;
@@ -12,6 +13,7 @@ use std::fs;
 use std::path::Path;
 
 use keys::{LISTS, NEEDS, THRUST, UNION_KEYS, reference};
+use others::schemas;
 use page::{page, schema};
 use roulement::scene::Scene;
 use serde_json::Value;
@@ -22,7 +24,11 @@ use crate::whole::compare;
 fn the_reference_of_scenes_is_that_of_the_sources() {
     let reference = reference();
     compare("docs/scene.md", &page(&reference));
-    compare("docs/scene.schema.json", &format!("{:#}\n", schema(&reference)));
+    let scene = schema(&reference);
+    compare("docs/scene.schema.json", &format!("{scene:#}\n"));
+    for (kind, schema) in schemas(&reference, &scene) {
+        compare(&format!("docs/{kind}.schema.json"), &format!("{schema:#}\n"));
+    }
 }
 
 /// Are all keys of a table known to a schema?

@@ -179,10 +179,13 @@ impl Source {
                     let mut variants: Vec<_> = item.variants.iter().collect();
                     variants
                         .sort_by_key(|variant| !variant.attrs.iter().any(|of| of.path().is_ident("default")));
+                    let own = |variant: &syn::Variant| named(&serde(&variant.attrs), "rename");
                     let of = |variant: &&syn::Variant| {
-                        (snake_case(&variant.ident.to_string()), doc(&variant.attrs))
+                        let name = own(variant).unwrap_or_else(|| snake_case(&variant.ident.to_string()));
+                        (name, doc(&variant.attrs))
                     };
-                    let words = serde(&item.attrs).iter().any(|part| part.starts_with("rename_all"));
+                    let words = serde(&item.attrs).iter().any(|part| part.starts_with("rename_all"))
+                        || variants.iter().all(|variant| own(variant).is_some());
                     if words {
                         source.enums.insert(item.ident.to_string(), variants.iter().map(of).collect());
                     }
@@ -232,7 +235,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 pub fn sources() -> Vec<Source> {
     let root = Path::new(roulement_tests::ROOT).join("src");
     let mut found = vec![];
-    for folder in ["schema", "effects", "scene", "contact/ball_race/film"] {
+    for folder in ["schema", "effects", "scene", "contact/ball_race/film", "catalogue"] {
         files(&root.join(folder), &mut found);
     }
     found.sort();
