@@ -15,8 +15,9 @@ use roulement_cli::modes::warnings;
 use roulement_cli::report::cells::{Cell, Column};
 use roulement_cli::report::figures::Shown;
 use roulement_cli::report::json;
+use roulement_cli::report::machine_columns::MachineColumns;
 use roulement_cli::report::parquet::ParquetWriter;
-use roulement_cli::report::results::{Choice, MachineColumns, Window};
+use roulement_cli::report::results::{Choice, Window};
 use roulement_cli::watch::{Seen, Watch};
 
 use crate::arrays::{bytes, numbers};
@@ -75,7 +76,7 @@ pub fn run<'py>(
 
 fn played(scene: &MachineScene, choice: &Choice, progress: Option<&Py<PyAny>>) -> PyResult<Done> {
     let mut machine = Machine::new(scene).map_err(runtime)?;
-    let columns = MachineColumns::new(&machine, choice).map_err(value)?;
+    let mut columns = MachineColumns::new(&machine, choice).map_err(value)?;
     let rows = Rows::of_scene(scene);
     let mut watch = Watch::of(&machine);
     let mut table = vec![];

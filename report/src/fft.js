@@ -1,5 +1,11 @@
 // Amplitude spectrum of equidistant values: Hann window, radix 2.
 
+/** Values of a series in the second half of a run, and their distance [s]. A last row out of step is left out. */
+export function secondHalf({ t, v }, run) {
+  const from = t.findIndex(time => time >= run.begin + 0.5 * (run.end - run.begin));
+  return { from, values: v.slice(from, v.length - 1), dt: (t[t.length - 2] - t[from]) / (t.length - 2 - from) };
+}
+
 /** Amplitudes at k / (n dt) of a history; the mean is taken away first. Zeros behind it make peaks smooth: n is at least twice its rows. */
 export function spectrum(values) {
   const rows = values.length;
@@ -16,7 +22,8 @@ export function spectrum(values) {
   return { amplitudes, n };
 }
 
-function transform(re, im) {
+/** Fourier transform in its place, of a power of two of values. */
+export function transform(re, im) {
   const n = re.length;
   for (let i = 1, j = 0; i < n; i++) {
     let bit = n >> 1;

@@ -12,6 +12,7 @@ import { orbits } from './orbits.js';
 import { polar } from './polar.js';
 import { drawAll, plotsSection, startPlots, setZoom } from './plots.js';
 import { spectra } from './spectra.js';
+import { vibration } from './vibration.js';
 import { power } from './power.js';
 import { contacts } from './contact.js';
 import { effects } from './effects.js';
@@ -68,8 +69,8 @@ async function start() {
 /** All that is shown of a run; figures and curves stand beside those of others, and `open` shows one of the bearings of a machine. */
 function partsOf(run, beside, open) {
   const [figures, before, after] = run.shaft
-    ? [machineCards(run), [shaftDrawing(run, open), machineSection(run, open)], [orbits(run), spectra(run)]]
-    : [cards(run), [drawing(run), playback(run), polar(run)], [spectra(run), power(beside), contacts(run), effects(run)]];
+    ? [machineCards(run), [shaftDrawing(run, open), machineSection(run, open)], [orbits(run), spectra(run), vibration(run)]]
+    : [cards(run), [drawing(run), playback(run), polar(run)], [spectra(run), vibration(run), power(beside), contacts(run), effects(run)]];
   return [h('div', { id: 'cards' }, figures), ...before, summary(beside), plotsSection(beside, run), ...after, cost(beside), sceneText(run)].filter(Boolean);
 }
 

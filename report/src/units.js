@@ -17,6 +17,7 @@ export function shown(name, unit, largest = 0) {
     case 'N.m': return small(1, 1e3, 'N mm', 'N m');
     case 'W': return small(0.5, 1e3, 'mW', 'W');
     case 'm/s': return small(1e-2, 1e3, 'mm/s', 'm/s');
+    case 'm/s2': return small(10, 1e3, 'mm/s\u00b2', 'm/s\u00b2');
     case 's': return [1e3, 'ms'];
     case 'J': return small(0.5, 1e3, 'mJ', 'J');
     case '1': return largest > 0 && largest < 0.02 ? [1e3, '10\u207b\u00b3'] : [1, ''];

@@ -1,5 +1,6 @@
 //! Results of a run: its table, its means, its energy and its plots; and the style of all plots.
 
+pub mod acceleration;
 pub mod cells;
 pub mod energy;
 pub mod figures;
@@ -8,6 +9,7 @@ pub mod interval;
 pub mod json;
 pub mod limits;
 pub mod losses;
+pub mod machine_columns;
 pub mod means;
 pub mod number;
 #[cfg(feature = "parquet")]

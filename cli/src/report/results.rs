@@ -7,20 +7,20 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use roulement::interface::variables::{MachineVariables, Source, Variables, quoted};
+use roulement::interface::variables::Variables;
 use roulement::scene::Scene;
-use roulement::scene::machine::MachineScene;
 use roulement::scene::units::{Quantity, Time};
 use roulement::simulation::inputs::Inputs;
-use roulement::simulation::machine::Machine;
 use roulement::simulation::outputs::Outputs;
 
+use super::acceleration::{self, Accelerations};
+use super::machine_columns::named;
+use super::number;
 #[cfg(feature = "parquet")]
 use super::{
     cells::{Cell, Column},
     parquet::ParquetWriter,
 };
-use super::{number, shaft};
 
 /// Why results could not be written.
 #[derive(Debug, Error)]
@@ -111,12 +111,25 @@ pub fn fits(name: &str, pattern: &str) -> bool {
     }
 }
 
-/// The columns of a result table: those variables of a scene that are chosen, and the time before them.
+/// The columns of a result table: the time, those variables of a scene that are chosen, and accelerations.
 pub struct Columns {
     variables: Variables,
     /// Rows of the variable table that are written.
     chosen: Vec<usize>,
+    /// Accelerations that are written, by the rows of their velocities.
+    accelerated: Vec<(usize, String)>,
+    accelerations: Accelerations,
     window: Window,
+}
+
+/// Velocities among columns, by their index, with the names of the accelerations that a rule chooses; not those that are columns themselves.
+pub(super) fn accelerated(names: &[&str], is_chosen: impl Fn(&str) -> bool) -> Vec<(usize, String)> {
+    let of = |(index, velocity): (usize, &&str)| {
+        let (place, component) = acceleration::of_velocity(velocity)?;
+        let name = acceleration::name(place, component);
+        (is_chosen(&name) && !names.contains(&name.as_str())).then_some((index, name))
+    };
+    names.iter().enumerate().filter_map(of).collect()
 }
 
 impl Columns {
@@ -125,161 +138,53 @@ impl Columns {
     /// # Errors
     /// If a chosen column is not there.
     pub fn new(scene: &Scene, choice: &Choice) -> Result<Self, ResultsError> {
-        let variables = Variables::moving(scene, true);
-        let names = || variables.rows().iter().map(|row| row.name.as_str());
-        if let Some(pattern) = choice.columns.iter().find(|pattern| !names().any(|name| fits(name, pattern)))
-        {
-            return Err(ResultsError::Column(pattern.clone()));
+        let all = Self::that(scene, Window::default(), |_| true);
+        let missing = |pattern: &&String| !all.names().skip(1).any(|(name, _)| fits(name, pattern));
+        match choice.columns.iter().find(missing) {
+            Some(pattern) => Err(ResultsError::Column(pattern.clone())),
+            None => Ok(Self::that(scene, choice.window, |name| choice.wants(name))),
         }
-        let chosen: Vec<usize> =
-            names().enumerate().filter(|(_, name)| choice.wants(name)).map(|(i, _)| i).collect();
-        Ok(Self { variables, chosen, window: choice.window })
     }
 
-    /// Those of a bearing of a machine that a rule chooses by their own names.
-    fn that(scene: &Scene, window: Window, is_chosen: impl Fn(&str) -> bool) -> Self {
+    /// Those that a rule chooses by their names.
+    pub(super) fn that(scene: &Scene, window: Window, is_chosen: impl Fn(&str) -> bool) -> Self {
         let variables = Variables::moving(scene, true);
-        let rows = variables.rows().iter().enumerate();
-        let chosen = rows.filter(|(_, row)| is_chosen(&row.name)).map(|(i, _)| i).collect();
-        Self { variables, chosen, window }
+        let names: Vec<&str> = variables.rows().iter().map(|row| row.name.as_str()).collect();
+        let accelerated = accelerated(&names, &is_chosen);
+        let chosen = (0..names.len()).filter(|i| is_chosen(names[*i])).collect();
+        Self { variables, chosen, accelerated, accelerations: Accelerations::default(), window }
     }
 
     /// Those of a bearing of a machine that are chosen with its name before them; unknown names are passed over.
-    fn named(scene: &Scene, bearing: &str, choice: &Choice) -> Self {
+    pub(super) fn named(scene: &Scene, bearing: &str, choice: &Choice) -> Self {
         Self::that(scene, choice.window, |name| choice.wants(&named(bearing, name)))
     }
 
     /// Names and units, the time first.
     pub fn names(&self) -> impl Iterator<Item = (&str, &'static str)> {
         let of = |i: &usize| (self.variables.rows()[*i].name.as_str(), self.variables.rows()[*i].unit.name);
-        std::iter::once(("time", "s")).chain(self.chosen.iter().map(of))
+        let accelerations = self.accelerated.iter().map(|(_, name)| (name.as_str(), acceleration::UNIT));
+        std::iter::once(("time", "s")).chain(self.chosen.iter().map(of)).chain(accelerations)
     }
 
-    /// Values of a row, if its time is in the window.
-    pub fn row(&self, inputs: &Inputs, outputs: &Outputs) -> Option<impl Iterator<Item = f64>> {
+    /// Takes a row; its values, if its time is in the window.
+    pub fn row(&mut self, inputs: &Inputs, outputs: &Outputs) -> Option<impl Iterator<Item = f64>> {
+        self.push(inputs, outputs);
         let values = std::iter::once(outputs.time).chain(self.values(inputs, outputs));
         self.window.contains(outputs.time).then_some(values)
     }
 
-    /// Values of all but the time.
-    fn values(&self, inputs: &Inputs, outputs: &Outputs) -> impl Iterator<Item = f64> {
+    /// Takes the velocities of a row.
+    pub(super) fn push(&mut self, inputs: &Inputs, outputs: &Outputs) {
+        let Self { variables, accelerated, accelerations, .. } = self;
+        let value = |(i, _): &(usize, String)| variables.value(&variables.rows()[*i], inputs, outputs);
+        accelerations.push(outputs.time, accelerated.iter().map(value));
+    }
+
+    /// Values of all but the time, of the row that was taken last.
+    pub(super) fn values(&self, inputs: &Inputs, outputs: &Outputs) -> impl Iterator<Item = f64> {
         let value = move |i: &usize| self.variables.value(&self.variables.rows()[*i], inputs, outputs);
-        self.chosen.iter().map(value)
-    }
-}
-
-/// Name of a column of a bearing of a machine.
-fn named(bearing: &str, column: &str) -> String {
-    if bearing.is_empty() { column.to_string() } else { format!("{}.{column}", quoted(bearing)) }
-}
-
-/// Columns of the tables of a machine's parts.
-pub struct PartColumns {
-    /// Columns of every bearing.
-    pub bearings: Vec<Columns>,
-    /// Which of the table of the shaft, the time first; none of a bearing alone.
-    pub shaft: Option<Vec<bool>>,
-}
-
-impl PartColumns {
-    /// Those that are chosen: of bearings by names of their own tables, which choose of all of them, or with the name of a bearing before
-    /// them; of the shaft by the names of its table, which is whole if none is chosen.
-    ///
-    /// # Errors
-    /// If a chosen column is in none of the tables.
-    pub fn new(scene: &MachineScene, choice: &Choice) -> Result<Self, ResultsError> {
-        let Some(system) = scene.shaft() else {
-            let of = |(_, scene)| Columns::new(scene, choice);
-            let bearings = scene.bearings().into_iter().map(of).collect::<Result<_, _>>()?;
-            return Ok(Self { bearings, shaft: None });
-        };
-        let of_shaft = shaft::columns(system);
-        let own = || of_shaft.iter().skip(1).map(|(name, _)| name.as_str());
-        let in_bearings = |pattern: &str| {
-            scene.bearings().into_iter().any(|(bearing, scene)| {
-                let fit = |name: &str| fits(name, pattern) || fits(&named(bearing, name), pattern);
-                Variables::moving(scene, true).rows().iter().any(|row| fit(&row.name))
-            })
-        };
-        let missing =
-            |pattern: &&String| !own().any(|name| fits(name, pattern)) && !in_bearings(pattern.as_str());
-        if let Some(pattern) = choice.columns.iter().find(missing) {
-            return Err(ResultsError::Column(pattern.clone()));
-        }
-        let of = |(bearing, scene): (&str, &Scene)| {
-            Columns::that(scene, choice.window, |name| {
-                choice.wants(name) || choice.wants(&named(bearing, name))
-            })
-        };
-        let whole = !own().any(|name| choice.wants(name));
-        let of_table = own().map(|name| whole || choice.wants(name));
-        Ok(Self {
-            bearings: scene.bearings().into_iter().map(of).collect(),
-            shaft: Some(std::iter::once(true).chain(of_table).collect()),
-        })
-    }
-}
-
-/// Columns of the one table of a whole machine: of a bearing alone its own; of a shaft those of the shaft and its housings, then those
-/// of every bearing with its name before them, all as variables of packages are named.
-pub struct MachineColumns {
-    shaft: Option<(MachineVariables, Vec<usize>)>,
-    /// By the name of their bearing.
-    bearings: Vec<(String, Columns)>,
-    window: Window,
-}
-
-impl MachineColumns {
-    /// Those that are chosen.
-    ///
-    /// # Errors
-    /// If a chosen column is not there.
-    pub fn new(machine: &Machine, choice: &Choice) -> Result<Self, ResultsError> {
-        let shaft = machine.shaft().map(|system| {
-            let variables = MachineVariables::new(system);
-            let own = variables.rows().iter().enumerate();
-            let own =
-                own.filter(|(_, row)| matches!(row.source, Source::Shaft(_)) && choice.wants(&row.name));
-            let chosen = own.map(|(reference, _)| reference).collect();
-            (variables, chosen)
-        });
-        let bearings = machine.bearings().map(|(name, bearing)| {
-            let columns = Columns::named(bearing.scene(), name, choice);
-            (name.to_string(), columns)
-        });
-        let all = Self { shaft, bearings: bearings.collect(), window: choice.window };
-        let names: Vec<String> = all.names().map(|(name, _)| name).collect();
-        let missing = |pattern: &&String| !names.iter().any(|name| fits(name, pattern));
-        match choice.columns.iter().find(missing) {
-            Some(pattern) => Err(ResultsError::Column(pattern.clone())),
-            None => Ok(all),
-        }
-    }
-
-    /// Names and units, the time first.
-    pub fn names(&self) -> impl Iterator<Item = (String, &'static str)> {
-        let shaft = self.shaft.iter().flat_map(|(variables, chosen)| {
-            chosen.iter().map(|i| (variables.rows()[*i].name.clone(), variables.rows()[*i].unit.name))
-        });
-        let bearings = self.bearings.iter().flat_map(|(bearing, columns)| {
-            columns.names().skip(1).map(move |(name, unit)| (named(bearing, name), unit))
-        });
-        [("time".to_string(), "s")].into_iter().chain(shaft).chain(bearings)
-    }
-
-    /// Values of a row, if its time is in the window.
-    pub fn row(&self, machine: &Machine) -> Option<Vec<f64>> {
-        if !self.window.contains(machine.time()) {
-            return None;
-        }
-        let mut row = vec![machine.time()];
-        if let (Some((variables, chosen)), Some(system)) = (&self.shaft, machine.shaft()) {
-            row.extend(chosen.iter().map(|reference| variables.value(*reference, system)));
-        }
-        for ((_, columns), (_, bearing)) in self.bearings.iter().zip(machine.bearings()) {
-            row.extend(columns.values(bearing.inputs(), bearing.outputs()));
-        }
-        Some(row)
+        self.chosen.iter().map(value).chain(self.accelerations.values().iter().copied())
     }
 }
 

@@ -10,6 +10,7 @@ use roulement::scene::system::spring::SceneSpring;
 use roulement::simulation::losses::LOSSES;
 use roulement::simulation::system::{HousingOutputs, PointOutput, ShaftOutputs, System, SystemOutputs};
 
+use super::acceleration;
 use super::figures::Shown;
 use super::plots::{Curve, Panel, figure};
 use super::style::PlotError;
@@ -84,6 +85,24 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
         (format!("{}.{what}.{}", load.name, ["x", "y", "z"][component % 3]), unit)
     }));
     columns
+}
+
+/// These columns, then the accelerations of all places of shafts and housings.
+pub fn columns_with_accelerations(scene: &SystemScene) -> Vec<(String, &'static str)> {
+    let of_housing = |index: usize| {
+        let housing = &scene.housings[index].name;
+        places_of_housing(scene, index).map(move |place| format!("{housing}.{place}"))
+    };
+    let places = places(scene).into_iter().chain((0..scene.housings.len()).flat_map(of_housing));
+    let accelerations = places
+        .flat_map(|place| ["x", "y", "z"].map(|axis| (acceleration::name(&place, axis), acceleration::UNIT)));
+    columns(scene).into_iter().chain(accelerations).collect()
+}
+
+/// Velocities [m/s] of these places.
+pub fn velocities(outputs: &SystemOutputs) -> impl Iterator<Item = f64> {
+    let places = points(outputs).chain(outputs.housings.iter().flat_map(points_of_housing));
+    places.flat_map(|point| [point.velocity.x, point.velocity.y, point.velocity.z])
 }
 
 /// A bearing by its stiffness or by rollers, or a coupling; none of a mesh.

@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use roulement::scene::machine::MachineScene;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::machine::Machine;
+use roulement::simulation::system::System;
 
-use super::results::{Choice, Columns, MachineColumns, PartColumns, ResultsError, TableWriter, Window};
+use super::acceleration::Accelerations;
+use super::machine_columns::{MachineColumns, PartColumns};
+use super::results::{Choice, Columns, ResultsError, TableWriter, Window};
 use super::shaft;
 
 /// Where the rows of a run go.
@@ -26,8 +29,23 @@ pub enum Tables {
 pub struct ShaftTable {
     /// Which of its columns.
     chosen: Vec<bool>,
+    accelerations: Accelerations,
     window: Window,
     table: TableWriter,
+}
+
+impl ShaftTable {
+    /// Takes a row, and writes it if its time is in the window.
+    fn write(&mut self, system: &System) -> Result<(), ResultsError> {
+        let Self { chosen, accelerations, window, table } = self;
+        accelerations.push(system.time(), shaft::velocities(system.outputs()));
+        if !window.contains(system.time()) {
+            return Ok(());
+        }
+        let row = shaft::row(system.scene(), system.outputs());
+        let all = row.into_iter().chain(accelerations.values().iter().copied()).zip(&*chosen);
+        table.write(all.filter(|(_, chosen)| **chosen).map(|(value, _)| value))
+    }
 }
 
 impl Tables {
@@ -59,10 +77,11 @@ impl Tables {
         let bearings = scene.bearings().into_iter().zip(columns.bearings).map(begin);
         let bearings = bearings.collect::<Result<_, ResultsError>>()?;
         let begin = |(scene, chosen): (&SystemScene, Vec<bool>)| {
-            let all = shaft::columns(scene).into_iter().zip(&chosen);
+            let all = shaft::columns_with_accelerations(scene).into_iter().zip(&chosen);
             let names = all.filter(|(_, chosen)| **chosen).map(|(name, _)| name).collect::<Vec<_>>();
             let table = TableWriter::create(of_shaft, names.into_iter())?;
-            Ok(ShaftTable { chosen, window: choice.window, table })
+            let accelerations = Accelerations::default();
+            Ok(ShaftTable { chosen, accelerations, window: choice.window, table })
         };
         Ok(Self::Each { bearings, shaft: scene.shaft().zip(columns.shaft).map(begin).transpose()? })
     }
@@ -78,11 +97,8 @@ impl Tables {
                 columns.row(machine).map_or(Ok(()), |row| table.write(row.into_iter()))
             }
             Self::Each { bearings, shaft } => {
-                if let (Some(ShaftTable { chosen, window, table }), Some(system)) = (shaft, machine.shaft())
-                    && window.contains(machine.time())
-                {
-                    let row = shaft::row(system.scene(), system.outputs()).into_iter().zip(&*chosen);
-                    table.write(row.filter(|(_, chosen)| **chosen).map(|(value, _)| value))?;
+                if let (Some(shaft), Some(system)) = (shaft, machine.shaft()) {
+                    shaft.write(system)?;
                 }
                 for ((columns, table), (_, bearing)) in bearings.iter_mut().zip(machine.bearings()) {
                     if let Some(row) = columns.row(bearing.inputs(), bearing.outputs()) {

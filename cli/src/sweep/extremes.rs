@@ -156,7 +156,7 @@ impl Gathered {
         for (of, (_, _, get)) in self.balls.iter_mut().zip(OF_BALLS) {
             outputs.balls.iter().for_each(|ball| of.push(get(ball)));
         }
-        if let Some(row) = self.columns.as_ref().and_then(|columns| columns.row(simulation.inputs(), outputs))
+        if let Some(row) = self.columns.as_mut().and_then(|columns| columns.row(simulation.inputs(), outputs))
         {
             for (of, value) in self.chosen.iter_mut().zip(row.skip(1)) {
                 of.push(outputs.time, value);

@@ -1,6 +1,7 @@
 //! The command line as a user meets it.
 #![allow(clippy::unwrap_used)]
 
+mod accelerations;
 mod alarms;
 mod bearing;
 mod cage;

@@ -1,8 +1,7 @@
 """Vibration of a run, as it is measured on machines: levels, envelope spectra, orders.
 
->>> run = roulement.run("scenes/radial.toml", columns=["inner.velocity.*"])
->>> acceleration = np.gradient(run["inner.velocity"][:, 1], run.time)
->>> levels(run.time, acceleration).velocity_rms
+>>> run = roulement.run("scenes/radial.toml", columns=["inner.acceleration.*"])
+>>> levels(run.time, run["inner.acceleration"][:, 1]).velocity_rms
 
 Signals are arrays over evenly spaced times [s], accelerations in m/s2.
 """
