@@ -30,8 +30,8 @@ ROOT = HERE.parent
 NAME = {"win32": "roulement.dll", "darwin": "libroulement.dylib"}.get(sys.platform, "libroulement.so")
 PROGRAM = "roulement.exe" if sys.platform == "win32" else "roulement"
 # What the source distribution has: of the folders all that git knows of, or all where there is no git.
-SOURCES = ["Cargo.toml", "Cargo.lock", "LICENSE", "README.md", "build.rs", "assets", "benches", "cli", "docs/scene.md", "docs/scene.schema.json", "examples", "python", "report/bundle",
-           "scenes", "src", "tests"]
+SOURCES = ["Cargo.toml", "Cargo.lock", "LICENSE", "README.md", "build.rs", "assets", "benches", "cli", "docs/scene.md",
+           *(f"docs/{kind}.schema.json" for kind in ("machine", "scene", "shelf", "sweep", "system")), "examples", "python", "report/bundle", "scenes", "src", "tests"]
 
 
 def _profile():

@@ -45,9 +45,7 @@ fn machine(reference: &Reference, scene: &Value) -> Value {
     machine["definitions"] = json!({ "scene": definition(scene) });
     let keys = &mut machine["properties"];
     // One as a section, or several.
-    let mut shaft = reference.object_of("ShaftSection", "schema/shaft.rs");
-    let description = shaft["description"].take();
-    keys["shaft"]["description"] = description;
+    let shaft = reference.object_of("ShaftSection", "schema/shaft.rs");
     one_of(&mut keys["shaft"], &json!([shaft, { "type": "array", "items": shaft }]));
     for varies in ["stiffness_variation", "transmission_error"] {
         // A list, or a column of a file.
