@@ -7,6 +7,7 @@ mod counts;
 mod dependencies;
 #[path = "../common/scenes.rs"]
 mod scenes;
+mod scripts;
 #[path = "../common/tables.rs"]
 mod tables;
 #[path = "../common/whole.rs"]
