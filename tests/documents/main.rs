@@ -5,6 +5,7 @@ mod columns;
 mod contributing;
 mod counts;
 mod dependencies;
+mod links;
 #[path = "../common/scenes.rs"]
 mod scenes;
 mod scripts;
