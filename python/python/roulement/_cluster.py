@@ -140,8 +140,12 @@ class Work:
             return 0
         if rows is None:
             raise RuntimeError(f"a worker has {seconds}, and this is roulement {VERSION}: all need the same version")
-        for case, row in rows:
-            self.sweep.put(case, row)
+        try:
+            for case, row in rows:
+                self.sweep.put(case, row)
+        except OSError as why:
+            # Of this machine's disc, and not of the scheduler, which would be waited for.
+            raise RuntimeError(str(why)) from why
         self.left.extend(reversed(cases[len(rows) :]))
         self.sizes.learn(len(rows), seconds)
         return len(rows)
@@ -150,7 +154,8 @@ class Work:
 def run(client, sweep, missing, wanted, batch, told):
     """Runs cases on the workers that a client has at any time, and keeps their rows; `told` hears how many are done.
 
-    Raises RuntimeError if a worker has another version, or none, or, after all others, if a case ends its workers; `Lost` and OSError if the scheduler has gone.
+    Raises RuntimeError if a worker has another version, or none, if rows cannot be kept, or, after all others, if a case ends its workers;
+    `Lost` and OSError if the scheduler has gone.
     """
     work, done = Work(client, sweep, missing, wanted, batch), 0
     try:

@@ -117,9 +117,9 @@ def run(
     `cases` is the path of a table (CSV or TOML), a list of dictionaries with keys of the scene, or a dictionary of lists: all
     combinations. `scene` is the base scene, `output` the directory. `columns` are variables whose mean, least, largest and last
     value are wanted, too. `workers` are threads. With `scheduler`, the address of one of Dask or a `distributed.Client`, cases
-    run there in batches of `batch`, or, if that is not given, of about ten seconds. Workers may come and go meanwhile. With `growth` the summary also has what grows or decays where each case starts, as that of
-    `roulement sweep --growth`: `grows` ("yes", "no", "cannot tell"), `growth` [1/s], `growth.frequency` [Hz], `growth.motion`, and
-    `circles` of every bearing.
+    run there in batches of `batch`, or, if that is not given, of about ten seconds; workers may come and go meanwhile. With `growth`
+    the summary also has what grows or decays where each case starts, as that of `roulement sweep --growth`: `grows` ("yes", "no",
+    "cannot tell"), `growth` [1/s], `growth.frequency` [Hz], `growth.motion`, and `circles` of every bearing.
 
     Raises ValueError for a key that no case can be read with, RuntimeError if workers have another version of this package or a scheduler
     stays away; a case that fails is a row with its reason.
