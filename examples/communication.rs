@@ -1,5 +1,5 @@
 //! Steps the package of a scene through the C interface: `communication SCENE.toml MICROSECONDS STEPS [OUTPUT...]`, reading outputs whose
-//! names begin so at each communication point. `scripts/communication-cost` counts the instructions.
+//! names begin so at each communication point. `scripts/measure communication-cost` counts the instructions.
 #![allow(missing_docs, clippy::unwrap_used, unsafe_code)]
 
 #[path = "../tests/fmi2_abi/mod.rs"]

@@ -1,5 +1,5 @@
 //! Evaluates one contact many times, for counting instructions: `contact_evaluations LAW HEATHCOTE COUNT`, with HEATHCOTE
-//! true or false. See `scripts/count-instructions`.
+//! true or false. See `scripts/measure contact-instructions`.
 
 use std::error::Error;
 use std::hint::black_box;

@@ -1,6 +1,6 @@
 //! Plays the first milliseconds of a scene and prints how many steps it took: `scene_steps SCENE.toml MILLISECONDS [EFFECT]`, with
 //! the example of an effect (by its key) in the scene if one is named. A scene of a shaft also tells how many coordinates its structures
-//! have. `scripts/step-instructions` and `scripts/shaft-cost` count the instructions of these.
+//! have. `scripts/measure step-instructions` and `scripts/measure shaft-cost` count the instructions of these.
 
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -1,7 +1,7 @@
 //! CPU time and work of fixed steps of 1e-5 s: `step_cost CASE LAW BALLS INTERVAL STEPS`, with a communication INTERVAL of so many
 //! steps. CASE is the thrust scene with its inner race in drive `pose` or `wrench`, or another scene, `cage` or `radial`, or `fast`: the radial
 //! one with that goal, for as long as these steps would take, or `fast:NAME`: the same of `scenes/cost/NAME.toml`, from the beginning. These have
-//! BALLS of their own. LAW may end in `+heathcote`. See `scripts/step-cost`.
+//! BALLS of their own. LAW may end in `+heathcote`. See `scripts/measure step-cost`.
 
 use std::error::Error;
 

@@ -31,5 +31,5 @@ mod _native {
     #[pymodule_export]
     use crate::simulations::{Simulation, State};
     #[pymodule_export]
-    use crate::sweeps::{Sweep, base_scene, case_row};
+    use crate::sweeps::{Sweep, base_scene, case_row, version};
 }

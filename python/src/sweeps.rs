@@ -9,7 +9,7 @@ use roulement_cli::sweep::SweepError;
 use roulement_cli::sweep::all;
 use roulement_cli::sweep::case::{self, Wanted};
 use roulement_cli::sweep::cases::{Cases, base_of};
-use roulement_cli::sweep::store::{from_text, to_text};
+use roulement_cli::sweep::store::{PROGRAM, from_text, to_text};
 
 use crate::failures::{file, scene as refused, value};
 
@@ -153,6 +153,12 @@ impl Sweep {
 #[pyfunction]
 pub fn base_scene(py: Python<'_>, path: PathBuf) -> PyResult<String> {
     py.detach(|| base_of(&path).map(|(text, _)| text).map_err(refused))
+}
+
+/// Version of the program that rows come from, with revision and platform: part of the names of cases.
+#[pyfunction]
+pub fn version() -> &'static str {
+    PROGRAM
 }
 
 /// Row of a case from the text of its scene, as text: what a worker on another machine does.

@@ -25,6 +25,12 @@ def table_of(path):
     return {name.split(" [")[0]: column for name, column in zip(header, zip(*rows))}
 
 
+def cases(count, duration):
+    """A table of cases that differ in friction."""
+    rows = [f"{0.04 + 0.08 * k / count!r},{duration}" for k in range(count)]
+    return "friction.ball_race,load.duration\n" + "\n".join(rows) + "\n"
+
+
 def bits(array):
     """Numbers as integers: equal bits alone are equal."""
     return np.ascontiguousarray(array, dtype=float).view(np.int64)

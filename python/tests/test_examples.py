@@ -94,13 +94,27 @@ def assert_is_written(name, said, phases):
             assert abs(float(new) - float(of)) <= max(0.005 * float(of), 1.001 * last), f"docs/gearbox.md is out of date: {row} for {before}"
 
 
-@pytest.mark.parametrize("document, least", [("docs/python.md", 5), ("README.md", 1)])
+@pytest.mark.parametrize("document, least", [("docs/python.md", 5), ("README.md", 1), ("docs/masters/fmpy.md", 2)])
 def test_blocks_of_the_documents_run(tmp_path, document, least):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(), re.DOTALL)
     assert len(blocks) >= least
     script = tmp_path / "blocks.py"
     script.write_text("\n".join(blocks).replace('"results/', f'"{tmp_path}/'))
     python(script)
+
+
+def test_the_commands_of_the_readme_for_fmpy_run(tmp_path):
+    """Those behind the installation, in a folder of their own. Other commands of the program run in `cli/tests`."""
+    block = re.search(r"```sh\npip install fmpy\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[1]
+    assert len(block.splitlines()) == 2
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    folders = [str(PROGRAM.parent), str(Path(sys.executable).parent), os.environ["PATH"]]
+    environment = {**ENVIRONMENT, "PATH": os.pathsep.join(folders)}
+    ended = subprocess.run(["bash", "-euc", block], cwd=tmp_path, capture_output=True, text=True, env=environment)
+    assert ended.returncode == 0, ended.stderr
+    time, force = re.search(r"\((\S+), (\S+)\)\s*$", ended.stdout).groups()
+    # Under 1.5 kN of thrust the bearing pushes back.
+    assert float(time) == pytest.approx(2e-3) and abs(float(force)) == pytest.approx(1500, rel=0.2), ended.stdout
 
 
 def test_stubs_name_what_there_is():

@@ -1,29 +1,12 @@
-"""Sweeps from Python: the same files as the command line's, on threads and on Dask with workers and schedulers that die."""
-
-import os
-import signal
-import socket
-import subprocess
-import sys
-import threading
-import time
-
-# A scheduler that has gone is given up sooner than by default; read where Dask is imported.
-os.environ.setdefault("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "3s")
+"""Sweeps from Python: the same files as the command line's, on threads (test_cluster.py: on Dask)."""
 
 import numpy as np
 import pytest
 import roulement
-from conftest import ROOT, instance_of, program
+from conftest import ROOT, cases, instance_of, program
 from roulement import sweep
 
 FRICTION = [0.05, 0.08, 0.11]
-
-
-def cases(count, duration):
-    """A table of cases that differ in friction."""
-    rows = [f"{0.04 + 0.08 * k / count!r},{duration}" for k in range(count)]
-    return "friction.ball_race,load.duration\n" + "\n".join(rows) + "\n"
 
 
 def test_consistency_files_are_those_of_the_command_line(tmp_path):
@@ -93,118 +76,3 @@ def test_consistency_the_same_cases_in_fmpy_have_the_same_numbers_but_for_the_er
             second = column[rows // 2 :]
             assert abs(of["mean"] - np.trapezoid(second) / (len(second) - 1)) < 0.5 * np.ptp(second), (case, name, of)
         fmu.freeInstance()
-
-
-# --- Dask, in processes of its own -------------------------------------------------------------------------------------------
-
-distributed = pytest.importorskip("distributed")
-
-
-class Processes:
-    """Schedulers and workers that are started and killed."""
-
-    def __init__(self, folder):
-        self.folder, self.running = folder, []
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
-        self.address = f"tcp://127.0.0.1:{self.port}"
-
-    def start(self, *arguments):
-        log = open(self.folder / f"dask-{len(self.running)}.log", "w")
-        process = subprocess.Popen([sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]], stdout=log, stderr=log)
-        self.running.append(process)
-        return process
-
-    def scheduler(self):
-        return self.start("dask_scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--no-dashboard")
-
-    def worker(self):
-        options = ["--nthreads", "1", "--no-nanny", "--no-dashboard", "--death-timeout", "60", "--local-directory", str(self.folder)]
-        return self.start("dask_worker", self.address, *options)
-
-    def end(self):
-        for process in self.running:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
-
-
-@pytest.fixture
-def processes(tmp_path):
-    processes = Processes(tmp_path)
-    yield processes
-    processes.end()
-
-
-def kept(folder):
-    """Files of finished cases and when they were written."""
-    files = (folder / "cases").glob("[!.]*.csv") if (folder / "cases").exists() else []
-    return {file.name: file.stat().st_mtime_ns for file in files}
-
-
-def begun(processes, folder, path, count):
-    """A sweep in a thread that has finished a few cases; it leaves its table in the list."""
-    found = []
-    run = lambda: found.append(sweep.run(path, ROOT / "scenes" / "thrust.toml", folder, scheduler=processes.address, batch=2))
-    thread = threading.Thread(target=run)
-    thread.start()
-    begin = time.monotonic()
-    while len(kept(folder)) < count:
-        assert time.monotonic() - begin < 120 and thread.is_alive()
-        time.sleep(5e-3)
-    return thread, found
-
-
-def whole(found, folder, count, before):
-    """All cases are there, each once, and what was there was not written again."""
-    (table,) = found
-    assert len(table) == count and set(table["status"]) == {"done"}
-    assert len(set(table["file"])) == count and len(kept(folder)) == count
-    after = kept(folder)
-    assert all(after[name] == at for name, at in before.items())
-    return table
-
-
-def test_a_killed_worker_and_a_restarted_scheduler_lose_no_case(processes, tmp_path):
-    path, count = tmp_path / "cases.csv", 40
-    path.write_text(cases(count, "40 ms"))
-    processes.scheduler()
-    workers = [processes.worker(), processes.worker()]
-    thread, found = begun(processes, tmp_path / "killed", path, 4)
-    workers[0].send_signal(signal.SIGKILL)
-    before = kept(tmp_path / "killed")
-    assert len(before) < count
-    thread.join(180)
-    table = whole(found, tmp_path / "killed", count, before)
-    # The numbers are those of threads.
-    own = sweep.run(path, ROOT / "scenes" / "thrust.toml", tmp_path / "own")
-    assert (tmp_path / "own" / "summary.csv").read_bytes() == (tmp_path / "killed" / "summary.csv").read_bytes()
-    assert len(own) == len(table)
-
-    # Scheduler and workers die, and come back.
-    thread, found = begun(processes, tmp_path / "restarted", path, 4)
-    for process in processes.running:
-        if process.poll() is None:
-            process.send_signal(signal.SIGKILL)
-            process.wait()
-    before = kept(tmp_path / "restarted")
-    assert 4 <= len(before) < count
-    processes.scheduler()
-    processes.worker()
-    thread.join(240)
-    whole(found, tmp_path / "restarted", count, before)
-    assert (tmp_path / "own" / "summary.csv").read_bytes() == (tmp_path / "restarted" / "summary.csv").read_bytes()
-
-
-def test_the_module_runs_on_a_cluster_of_its_own(tmp_path):
-    path = tmp_path / "cases.csv"
-    path.write_text(cases(6, "1 ms"))
-    command = [sys.executable, "-m", "roulement.sweep", path, "--scene", ROOT / "scenes" / "thrust.toml", "-o", tmp_path / "out", "--workers", "2"]
-    ended = subprocess.run(list(map(str, command)), capture_output=True, text=True, env={**os.environ, "DASK_LOGGING__DISTRIBUTED": "error"})
-    assert ended.returncode == 0, ended.stderr
-    assert "6 done, 0 failed, 0 not run" in ended.stdout
-    program("sweep", path, "--scene", ROOT / "scenes" / "thrust.toml", "-o", tmp_path / "program")
-    assert (tmp_path / "out" / "summary.csv").read_bytes() == (tmp_path / "program" / "summary.csv").read_bytes()
-    ended = subprocess.run([*map(str, command[:4]), "--scene", "nowhere.toml"], capture_output=True, text=True)
-    assert ended.returncode == 1 and "nowhere.toml" in ended.stderr and "Traceback" not in ended.stderr

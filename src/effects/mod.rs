@@ -2,7 +2,7 @@
 //!
 //! Work that an effect shares with others stays, though: a step without friction (`creep = "frictionless"`) still has the normal
 //! contacts, their derivatives and the Newton matrix, which are 64 % of the instructions of a step with `saturated` under
-//! prescribed races and 56 % with a race as a body (`scripts/step-cost`).
+//! prescribed races and 56 % with a race as a body (`scripts/measure step-cost`).
 //!
 //! Each has a file: the struct of its keys with units and defaults, what is told about it ([`Info`]), its
 //! numbers with their ranges, its checks, its outputs, and what the model takes from it. To add one:

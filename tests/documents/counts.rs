@@ -74,7 +74,7 @@ fn regression_measured_counts_of_the_model() {
 
 #[test]
 fn regression_corrections_by_number_of_balls() {
-    // As scripts/ball-cost: pitch circle and loads grow with the balls, the surface speed is the same.
+    // As scripts/measure ball-cost: pitch circle and loads grow with the balls, the surface speed is the same.
     let of = |cage: bool| {
         let of_balls = |balls: u32| {
             let changes = [

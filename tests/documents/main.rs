@@ -5,8 +5,10 @@ mod columns;
 mod contributing;
 mod counts;
 mod dependencies;
+mod links;
 #[path = "../common/scenes.rs"]
 mod scenes;
+mod scripts;
 #[path = "../common/tables.rs"]
 mod tables;
 #[path = "../common/whole.rs"]

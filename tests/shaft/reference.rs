@@ -114,7 +114,7 @@ fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
         }
         table.push('\n');
     }
-    compare_part("costs", &table, "scripts/shaft-cost");
+    compare_part("costs", &table, "scripts/measure shaft-cost");
     let record =
         fs::read_to_string(Path::new(roulement_tests::ROOT).join("docs/figures/mesh-cost.csv")).unwrap();
     let mut table = String::from(
@@ -127,7 +127,7 @@ fn the_document_has_the_keys_of_the_sources_and_the_costs_of_the_record() {
         writeln!(table, "| {meshes} | {bearings} | {apart} | {meshed} | {of_bearing:.0} | {of_mesh:.0} |")
             .unwrap();
     }
-    compare_part("mesh costs", &table, "scripts/mesh-cost");
+    compare_part("mesh costs", &table, "scripts/measure mesh-cost");
 }
 
 #[test]

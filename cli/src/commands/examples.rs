@@ -30,6 +30,8 @@ const EXAMPLES: &[(&str, &[&str])] = &[
         &[
             "sweep examples/sweeps/misalignment.toml --threads 2 -o sweep",
             "sweep cases.csv --scene scenes/radial.toml --columns 'balls.entering_slip_load'",
+            "sweep examples/sweeps/misalignment.toml -o sweep --shard 1/64",
+            "sweep examples/sweeps/misalignment.toml -o sweep --collect",
         ],
     ),
     ("scene", &["scene --keys friction", "scene --schema > scene.schema.json"]),

@@ -18,6 +18,7 @@ use roulement_cli::report::results::Choice;
 use roulement_cli::sweep::all::{Sweep, threads as cores};
 use roulement_cli::sweep::case::Wanted;
 use roulement_cli::sweep::cases::{Cases, base_of};
+use roulement_cli::sweep::shard::{self, Identity, Shard};
 use roulement_cli::sweep::store::aside;
 
 use super::interrupt::{INTERRUPTED, heeded_interrupt};
@@ -54,6 +55,14 @@ pub struct Options {
     /// Cases at a time; as many as there are cores if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Run every N-th case alone, from the K-th on, into `shards/K-of-N` of the directory: for job arrays of clusters. `--collect` joins
+    /// all shards.
+    #[arg(long, value_name = "K/N", conflicts_with = "collect")]
+    shard: Option<Shard>,
+    /// Run nothing, but join what shards have done: the directory is then that of a sweep which was not divided. Shards that are missing
+    /// or unfinished are named.
+    #[arg(long)]
+    collect: bool,
     /// Keep all that `roulement run` writes of these cases, too, such as `3,7`: `roulement report` shows their drawing, playback
     /// and plots.
     #[arg(long, value_name = "CASES", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
@@ -85,7 +94,8 @@ impl Format {
 /// # Errors
 /// If the cases or the scene cannot be read, no case can be run, or files cannot be written.
 pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
-    let Options { cases: table, scene, output, columns, tables, growth, threads, runs } = options;
+    let Options { cases: table, scene, mut output, columns, tables, growth, shard, collect, threads, runs } =
+        options;
     let cases = Cases::load(&table).map_err(|why| or_kind(&table, &[Kind::Sweep, Kind::Csv], why))?;
     let Some(scene) = scene.or_else(|| cases.scene.clone()) else {
         return Err(format!("{}: name the base scene by --scene", table.display()).into());
@@ -97,8 +107,21 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     let (base, notes) = base_of(&scene)?;
     tell(notes);
     let wanted = Wanted { columns, tables: tables.map(Format::ending), growth };
-    let sweep = Sweep::new(cases, base, wanted, &output)?;
-    let missing = sweep.missing();
+    let mut left = vec![];
+    let sweep = if let Some(shard) = shard {
+        let sweep = Sweep::of_shard(cases, base, wanted, &output, shard)?;
+        output = shard.folder(&output);
+        say(&format!("shard {} of {}: {} cases\n", shard.number, shard.of, sweep.names.len()))?;
+        sweep
+    } else if collect {
+        let identity = Identity::new(&cases, &base, &wanted);
+        let sweep = Sweep::new(cases, base, wanted, &output)?;
+        left = shard::collect(&sweep, &identity, &output)?;
+        sweep
+    } else {
+        Sweep::new(cases, base, wanted, &output)?
+    };
+    let missing = if collect { vec![] } else { sweep.missing() };
     let damaged = missing.iter().filter(|case| sweep.is_damaged(**case)).count();
     tell(
         (damaged > 0).then(|| format!("{damaged} of the finished cases were damaged or changed: run again")),
@@ -116,17 +139,22 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     // Also of a sweep that could not go on.
     let counts = sweep.write_summary(&output)?;
     ran?;
-    let kept = sweep.names.iter().filter(|name| name.is_ok()).count() - missing.len();
+    let there = sweep.names.iter().filter(|name| name.is_ok()).count() - missing.len();
+    let there = if collect { String::new() } else { format!("; {there} of them were there already") };
     say(&format!(
-        "{} done, {} failed, {} not run; {kept} of them were there already\nsummary          {}\n",
+        "{} done, {} failed, {} not run{there}\nsummary          {}\n",
         counts.done,
         counts.failed,
         counts.not_run,
         output.join("summary.csv").display()
     ))?;
-    for case in runs {
-        keep_run(&sweep, case, &interrupted)?;
+    for number in runs {
+        // Those of other shards are theirs.
+        if let Some(case) = (0..sweep.names.len()).find(|case| sweep.cases.number(*case) == number) {
+            keep_run(&sweep, case, &interrupted)?;
+        }
     }
+    tell(shard::told(&left));
     // In the end, where it is seen.
     if let Some((case, warning)) = &counts.first_warning {
         say(&format!("WARNINGS         in {} cases, as in case {case}: {warning}\n", counts.warned))?;
@@ -141,20 +169,21 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Keeps the whole run of a case, counted from 1, if it is not kept yet; that of a case that fails, too, as far as it came.
+/// Keeps the whole run of a case, counted from 0, if it is not kept yet; that of a case that fails, too, as far as it came.
 fn keep_run(sweep: &Sweep, case: usize, interrupted: &Arc<AtomicBool>) -> Result<(), Box<dyn Error>> {
-    let name = match &sweep.names[case - 1] {
+    let number = sweep.cases.number(case);
+    let name = match &sweep.names[case] {
         Ok(name) => name,
         Err(why) => {
-            tell([format!("case {case} has no run: {why}")]);
+            tell([format!("case {number} has no run: {why}")]);
             return Ok(());
         }
     };
     let kept = sweep.store.run(name)?;
     if !kept.is_dir() {
         let part = aside(&kept);
-        let words = format!("case {case}: ");
-        let ended = match MachineScene::edited(&sweep.cases.text_of(&sweep.base, case - 1)?) {
+        let words = format!("case {number}: ");
+        let ended = match MachineScene::edited(&sweep.cases.text_of(&sweep.base, case)?) {
             Ok(scene) => {
                 let place = Place { output: part.clone(), choice: Choice::default(), said: Said::Nothing };
                 let player = Player { interrupted: Arc::clone(interrupted), words };
@@ -163,7 +192,7 @@ fn keep_run(sweep: &Sweep, case: usize, interrupted: &Arc<AtomicBool>) -> Result
             Err(why) => Err(why.into()),
         };
         if let Err(why) = ended {
-            tell([format!("case {case}: {why}")]);
+            tell([format!("case {number}: {why}")]);
         }
         if interrupted.load(Ordering::Relaxed) || !part.join(record::FILE).is_file() {
             // It may not have been begun.
@@ -172,5 +201,5 @@ fn keep_run(sweep: &Sweep, case: usize, interrupted: &Arc<AtomicBool>) -> Result
         }
         fs::rename(&part, &kept).map_err(|why| format!("cannot write {}: {why}", kept.display()))?;
     }
-    Ok(say(&format!("{:<17}{}\n", format!("run {case}"), kept.display()))?)
+    Ok(say(&format!("{:<17}{}\n", format!("run {number}"), kept.display()))?)
 }

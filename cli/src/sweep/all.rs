@@ -13,6 +13,7 @@ use super::case::{self, Wanted};
 use super::cases::Cases;
 use super::columns;
 use super::setting::Setting;
+use super::shard::{Identity, Shard};
 use super::store::{Store, aside};
 
 /// A sweep: cases of a scene, what is wanted of them, and where their rows are kept.
@@ -32,23 +33,39 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Names all cases. Their scenes are read when they are run, but for as many as show that every key is one.
+    /// All cases.
     ///
     /// # Errors
     /// If there is a key that no case can be read with, or a column that is not there, or the directory cannot be made.
     pub fn new(cases: Cases, base: String, wanted: Wanted, directory: &Path) -> Result<Self, SweepError> {
-        let text = |case| cases.text_of(&base, case);
-        let name = |case| Ok(Store::name(&text(case).map_err(|why| why.to_string())?, &wanted));
+        check(&cases, &base, &wanted)?;
+        Self::checked(cases, base, wanted, directory)
+    }
+
+    /// The cases of a shard, which are kept in its folder of the directory; those of others are looked at as [`Self::new`] does.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_shard(
+        mut cases: Cases,
+        base: String,
+        wanted: Wanted,
+        directory: &Path,
+        shard: Shard,
+    ) -> Result<Self, SweepError> {
+        check(&cases, &base, &wanted)?;
+        let identity = Identity::new(&cases, &base, &wanted);
+        cases.keep(shard);
+        let folder = shard.folder(directory);
+        identity.write(&folder)?;
+        Self::checked(cases, base, wanted, &folder)
+    }
+
+    /// Names all cases. Their scenes are read when they are run.
+    fn checked(cases: Cases, base: String, wanted: Wanted, directory: &Path) -> Result<Self, SweepError> {
+        let name =
+            |case| Ok(Store::name(&cases.text_of(&base, case).map_err(|why| why.to_string())?, &wanted));
         let names: Vec<Result<String, String>> = on_threads(cases.rows.len(), threads(), name);
-        let read = |case: usize| MachineScene::edited(&text(case)?);
-        // A misspelt key is no matter of single cases.
-        for (place, key) in cases.keys.iter().enumerate() {
-            let sets = |case: &usize| cases.rows[*case].get(place).is_some_and(Option::is_some);
-            first_read((0..names.len()).filter(sets), read, &format!("no case that sets {}", key.name))?;
-        }
-        if let Some(scene) = first_read(0..names.len(), read, "no case")? {
-            columns::check(&scene, &wanted.columns)?;
-        }
         let store = Store::new(directory)?;
         let is_number = |setting: &Setting| setting.shown.parse::<f64>().is_ok();
         let of = |place: usize| cases.rows.iter().filter_map(move |row| row.get(place)?.as_ref());
@@ -129,6 +146,21 @@ impl Sweep {
         });
         failed.into_inner().ok().flatten().map_or(Ok(()), Err)
     }
+}
+
+/// Reads as many scenes of cases as show that every key is one, and that columns are there.
+fn check(cases: &Cases, base: &str, wanted: &Wanted) -> Result<(), SweepError> {
+    let read = |case: usize| MachineScene::edited(&cases.text_of(base, case)?);
+    let all = 0..cases.rows.len();
+    // A misspelt key is no matter of single cases.
+    for (place, key) in cases.keys.iter().enumerate() {
+        let sets = |case: &usize| cases.rows[*case].get(place).is_some_and(Option::is_some);
+        first_read(all.clone().filter(sets), read, &format!("no case that sets {}", key.name))?;
+    }
+    if let Some(scene) = first_read(all, read, "no case")? {
+        columns::check(&scene, &wanted.columns)?;
+    }
+    Ok(())
 }
 
 /// The first of some cases whose scene can be read; none if there is no case.

@@ -37,6 +37,7 @@ use toml::{Table, Value};
 use super::SweepError;
 use super::ranges::{grid, latin_hypercube};
 use super::setting::{Setting, leaves};
+use super::shard::Shard;
 
 /// A column: a key of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,6 +59,8 @@ pub struct Cases {
     pub keys: Vec<Key>,
     /// Cases, a setting for each key that they set.
     pub rows: Vec<Vec<Option<Setting>>>,
+    /// Numbers of the cases in the table that they are a part of, counted from 1; empty where all of it is there.
+    pub numbers: Vec<usize>,
 }
 
 impl Cases {
@@ -212,6 +215,22 @@ impl Cases {
         }
         self.rows.push(row);
         Ok(())
+    }
+
+    /// Number of a case in its table, counted from 1.
+    pub fn number(&self, case: usize) -> usize {
+        self.numbers.get(case).copied().unwrap_or(case + 1)
+    }
+
+    /// Takes out all cases but those of a shard. They keep their numbers.
+    pub fn keep(&mut self, shard: Shard) {
+        let numbers = (1..=self.rows.len()).filter(|number| shard.has(number - 1)).collect();
+        let mut case = 0;
+        self.rows.retain(|_| {
+            case += 1;
+            shard.has(case - 1)
+        });
+        self.numbers = numbers;
     }
 
     /// The text of the scene of a case, from that of the base scene. A scene of that text may still be refused.

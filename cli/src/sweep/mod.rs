@@ -11,6 +11,7 @@
 //! | `extremes` | least and largest values of a run, means of chosen columns |
 //! | `store` | rows of finished cases on the disk, by a hash of all that they follow from |
 //! | `all` | all cases on some threads |
+//! | `shard` | parts of a sweep on machines that share a disc, and how they are joined |
 //! | `summary` | the summary of all cases, in their order |
 
 pub mod all;
@@ -21,6 +22,7 @@ mod extremes;
 mod limits;
 mod ranges;
 pub mod setting;
+pub mod shard;
 pub mod store;
 pub mod summary;
 

@@ -15,6 +15,8 @@ use crate::report::cells::{Cell, Column};
 
 /// Form of the rows: another number where their columns mean something else.
 const SCHEMA: u32 = 2;
+/// Version of the program, with revision and platform: another one may give other numbers.
+pub const PROGRAM: &str = env!("ROULEMENT_VERSION");
 /// [-] bytes of the hash in a name: two of 1e9 cases agree by chance with 1e-21.
 const BYTES: usize = 16;
 
@@ -44,12 +46,11 @@ impl Store {
 
     /// Name of a case: a hash of its scene's text, of the program and of what is wanted.
     pub fn name(scene: &str, wanted: &Wanted) -> String {
-        let program = env!("ROULEMENT_VERSION");
         let tables = wanted.tables.as_deref().unwrap_or_default();
         // Without growth a case has the name that it had before there was such a choice.
         let growth = if wanted.growth { "\0growth" } else { "" };
         let wanted = format!("{}\0{tables}{growth}", wanted.columns.join(","));
-        let hash = Sha256::digest(format!("{SCHEMA}\0{program}\0{wanted}\0{scene}"));
+        let hash = Sha256::digest(format!("{SCHEMA}\0{PROGRAM}\0{wanted}\0{scene}"));
         hex(&hash[..BYTES])
     }
 
@@ -124,14 +125,68 @@ impl Store {
         fs::write(&aside, text).and_then(|()| fs::rename(&aside, &path)).map_err(|why| failed(&why))
     }
 
+    /// Takes a finished case out of another store: its row and table where they are wanted, and its run, if it is kept there and not here.
+    /// Files stay in the other store, too; where the disc can, they are one file with two names.
+    ///
+    /// # Errors
+    /// If files cannot be written.
+    pub fn take(
+        &self,
+        from: &Self,
+        name: &str,
+        tables: Option<&str>,
+        with_row: bool,
+    ) -> Result<(), SweepError> {
+        if with_row {
+            // The row last: where it is, all is there. A case that has failed has no table.
+            if let Some(ending) = tables.filter(|ending| from.table_path(name, ending).is_file()) {
+                link(&from.table_path(name, ending), &self.table(name, ending)?)?;
+            }
+            link(&from.path(name), &self.path(name))?;
+        }
+        let run = from.directory.join(RUNS).join(name);
+        if run.is_dir() {
+            let kept = self.run(name)?;
+            if !kept.is_dir() {
+                let part = aside(&kept);
+                link_all(&run, &part)?;
+                fs::rename(&part, &kept).map_err(|why| SweepError::file("write", &kept, &why))?;
+            }
+        }
+        Ok(())
+    }
+
     /// The row of a case; none if it is not done, or its file not as it was written.
     pub fn get(&self, name: &str) -> Option<Row> {
         from_text(&self.lines(name)?).ok()
     }
 }
 
+/// Gives a file another name, in the place of what is there; copies it where the disc knows one name of a file alone.
+fn link(from: &Path, to: &Path) -> Result<(), SweepError> {
+    let part = aside(to);
+    let linked = fs::hard_link(from, &part).or_else(|_| fs::copy(from, &part).map(drop));
+    linked.and_then(|()| fs::rename(&part, to)).map_err(|why| SweepError::file("write", to, &why))
+}
+
+/// The same for all files of a folder.
+fn link_all(from: &Path, to: &Path) -> Result<(), SweepError> {
+    let failed = |why: std::io::Error| SweepError::file("copy", from, &why);
+    fs::create_dir_all(to).map_err(failed)?;
+    for entry in fs::read_dir(from).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let (path, to) = (entry.path(), to.join(entry.file_name()));
+        if path.is_dir() {
+            link_all(&path, &to)?;
+        } else {
+            link(&path, &to)?;
+        }
+    }
+    Ok(())
+}
+
 /// Bytes in hexadecimal digits.
-fn hex(bytes: &[u8]) -> String {
+pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -181,11 +236,15 @@ pub fn from_text(text: &str) -> Result<Row, csv::Error> {
     Ok(header.iter().zip(&values).map(cell).collect())
 }
 
-/// A name of its own beside a file, for what is not whole yet. It keeps the ending, which says the format.
+/// A name of its own beside a file, for what is not whole yet. It keeps the ending, which says the format. Processes of several machines
+/// may have the same number on a shared disc: each has a mark of chance, too.
 pub fn aside(path: &Path) -> PathBuf {
+    use std::hash::{BuildHasher, RandomState};
+    use std::sync::LazyLock;
     use std::sync::atomic::{AtomicU64, Ordering};
     static COUNT: AtomicU64 = AtomicU64::new(0);
-    let mark = format!("part-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+    static CHANCE: LazyLock<u64> = LazyLock::new(|| RandomState::new().hash_one(std::process::id()));
+    let mark = format!("part-{}-{:x}-{}", std::process::id(), *CHANCE, COUNT.fetch_add(1, Ordering::Relaxed));
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     path.with_file_name(format!(".{mark}-{name}"))
 }

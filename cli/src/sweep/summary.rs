@@ -30,7 +30,7 @@ pub struct Counts {
 impl Sweep {
     /// Row of a case with its number and its keys before what came of it.
     fn row(&self, case: usize) -> Row {
-        let mut row: Row = vec![(Column::number("case", ""), Cell::Number((case + 1) as f64))];
+        let mut row: Row = vec![(Column::number("case", ""), Cell::Number(self.cases.number(case) as f64))];
         for (place, key) in self.cases.keys.iter().enumerate() {
             let shown =
                 self.cases.rows[case].get(place).and_then(Option::as_ref).map(|setting| &setting.shown);
@@ -93,7 +93,7 @@ impl Sweep {
             };
             if let Some(warning) = row.iter().find_map(warns) {
                 counts.warned += 1;
-                counts.first_warning.get_or_insert((case + 1, warning));
+                counts.first_warning.get_or_insert((self.cases.number(case), warning));
             }
             table.see(&row);
         }

@@ -30,7 +30,8 @@ fn documents() -> Vec<(String, String)> {
     let read = |path: PathBuf| {
         (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read_to_string(path).unwrap())
     };
-    let pages = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let folders = ["docs", "docs/masters"].map(|folder| fs::read_dir(root().join(folder)).unwrap());
+    let pages = folders.into_iter().flatten().map(|entry| entry.unwrap().path());
     let mut all: Vec<_> =
         pages.filter(|path| path.extension().is_some_and(|of| of == "md")).map(read).collect();
     all.push(read(root().join("README.md")));
@@ -125,6 +126,10 @@ fn workplace() -> Scratch {
         assert!(text.contains(duration), "{text}");
         write(&name, &text.replace(duration, "\"0.5 ms\""));
     }
+    let misaligned = fs::read_to_string(root().join("examples/sweeps/misalignment.toml")).unwrap();
+    assert!(misaligned.contains("cases = 1000"), "{misaligned}");
+    let few = misaligned.replace("cases = 1000", "cases = 2").replace("\"20 ms\"", "\"1 ms\"");
+    write("examples/sweeps/misalignment.toml", &few);
     fs::create_dir(scratch.path("build")).unwrap();
     write(
         "system.toml",

@@ -28,6 +28,7 @@ mod same_bits;
 mod scene_keys;
 mod shaft;
 mod shaft_keeps;
+mod shards;
 mod signs;
 mod spectrum;
 mod sweep;

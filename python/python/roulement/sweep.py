@@ -94,14 +94,17 @@ class _Progress:
     """One line with an estimate of what is left."""
 
     def __init__(self, shown):
-        self.shown, self.begin, self.told = shown, time.monotonic(), -1
+        self.shown, self.begin, self.told = shown, time.monotonic(), None
 
-    def __call__(self, done, count):
-        if not self.shown or count == 0 or done == self.told:
+    def __call__(self, done, count, threads=None):
+        """Of a cluster `threads` are those of its workers."""
+        if not self.shown or count == 0 or (done, threads) == self.told:
             return
-        self.told = done
+        self.told = done, threads
         elapsed = time.monotonic() - self.begin
         left = f"{elapsed / done * (count - done):.0f} s left" if done else ""
+        if threads is not None:
+            left += f", {threads} threads of workers" if threads else ", no worker yet"
         end = "\n" if done >= count else ""
         print(f"\r{done} of {count} cases, {elapsed:.0f} s elapsed, {left}   ", end=end, file=sys.stderr, flush=True)
 
@@ -114,11 +117,12 @@ def run(
     `cases` is the path of a table (CSV or TOML), a list of dictionaries with keys of the scene, or a dictionary of lists: all
     combinations. `scene` is the base scene, `output` the directory. `columns` are variables whose mean, least, largest and last
     value are wanted, too. `workers` are threads. With `scheduler`, the address of one of Dask or a `distributed.Client`, cases
-    run there in batches. With `growth` the summary also has what grows or decays where each case starts, as that of
-    `roulement sweep --growth`: `grows` ("yes", "no", "cannot tell"), `growth` [1/s], `growth.frequency` [Hz], `growth.motion`, and
-    `circles` of every bearing.
+    run there in batches of `batch`, or, if that is not given, of about ten seconds; workers may come and go meanwhile. With `growth`
+    the summary also has what grows or decays where each case starts, as that of `roulement sweep --growth`: `grows` ("yes", "no",
+    "cannot tell"), `growth` [1/s], `growth.frequency` [Hz], `growth.motion`, and `circles` of every bearing.
 
-    Raises ValueError for a key that no case can be read with; a case that fails is a row with its reason.
+    Raises ValueError for a key that no case can be read with, RuntimeError if workers have another version of this package or a scheduler
+    stays away; a case that fails is a row with its reason.
     """
     wanted = {"columns": [columns] if isinstance(columns, str) else list(columns), "growth": growth}
     sweep = _open(cases, scene, output, wanted)
@@ -134,67 +138,30 @@ def run(
     return Table(Path(output) / "summary.csv")
 
 
-def _batch(cases, wanted):
-    """Work of a worker: rows of cases from the texts of their scenes."""
-    return [(case, _native.case_row(text, **wanted)) for case, text in cases]
-
-
 def _run_on(scheduler, sweep, wanted, batch, told):
     """Runs what is missing on a scheduler; goes on where it was when that comes back."""
     from distributed import Client
 
+    from . import _cluster
+
     first = sweep.missing()
     begin = time.monotonic()
     while missing := sweep.missing():
+        before = len(first) - len(missing)
+        heard = lambda done, threads, before=before: told(before + done, len(first), threads)
         try:
             if isinstance(scheduler, Client):
-                return _on_client(scheduler, sweep, missing, wanted, batch, lambda done: told(done, len(first)))
+                return _cluster.run(scheduler, sweep, missing, wanted, batch, heard)
             with Client(scheduler, timeout=10, set_as_default=False) as client:
-                before = len(first) - len(missing)
-                _on_client(client, sweep, missing, wanted, batch, lambda done: told(before + done, len(first)))
-        except (OSError, _Lost) as why:
+                _cluster.run(client, sweep, missing, wanted, batch, heard)
+        except (OSError, _cluster.Lost) as why:
+            if isinstance(scheduler, Client):
+                raise RuntimeError(f"the scheduler has gone: {why}; the same call with a new client goes on") from why
             if len(sweep.missing()) < len(missing):
                 begin = time.monotonic()
             if time.monotonic() - begin > PATIENCE:
                 raise RuntimeError(f"the scheduler {scheduler} has gone: {why}; the same call goes on") from why
             time.sleep(0.5)
-
-
-class _Lost(Exception):
-    """Batches that the scheduler knows no more."""
-
-
-def _on_client(client, sweep, missing, wanted, batch, told):
-    from concurrent.futures import CancelledError
-
-    from distributed import as_completed
-
-    cores = max(1, sum(client.nthreads().values()))
-    batch = batch or max(1, min(100, len(missing) // (4 * cores)))
-    batches = iter([missing[i : i + batch] for i in range(0, len(missing), batch)])
-
-    def submit():
-        for cases in batches:
-            texts = [(case, sweep.scene_text(case)) for case in cases]
-            # Workers that die are no fault of a batch.
-            return client.submit(_batch, texts, wanted, pure=False, retries=10)
-        return None
-
-    # A few in flight: a million scenes need not be with the scheduler.
-    running = as_completed([future for future in (submit() for _ in range(4 * cores)) if future is not None], loop=client.loop)
-    done = 0
-    for future in running:
-        try:
-            rows = future.result()
-        except CancelledError as why:
-            raise _Lost(str(why)) from why
-        for case, row in rows:
-            sweep.put(case, row)
-        done += len(rows)
-        told(done)
-        following = submit()
-        if following is not None:
-            running.add(following)
 
 
 def main(arguments=None):
@@ -207,7 +174,7 @@ def main(arguments=None):
     parser.add_argument("--growth", action="store_true", help="look at what grows about the start of each case, and at races that circle")
     parser.add_argument("--scheduler", help="address of a Dask scheduler, such as tcp://host:8786; a cluster of this machine if not given")
     parser.add_argument("--workers", type=int, help="processes of that cluster; as many as there are cores if not given")
-    parser.add_argument("--batch", type=int, help="cases of a task")
+    parser.add_argument("--batch", type=int, help="cases of a task; as many as take about ten seconds if not given")
     given = parser.parse_args(arguments)
     options = {
         "scene": given.scene,

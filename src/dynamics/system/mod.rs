@@ -69,7 +69,7 @@ pub struct StageBounds {
 ///
 /// # Errors
 /// The index among the parts of the bearing where the residual or the local error is largest, and what failed; the step control has then been told.
-// A function of its own in programs, too: scripts/step-instructions counts what it takes.
+// A function of its own in programs, too: scripts/measure step-instructions counts what it takes.
 #[inline(never)]
 pub fn try_step(
     parts: &mut [Part<'_>],

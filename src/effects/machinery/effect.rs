@@ -24,7 +24,7 @@ pub struct Info {
     pub states: &'static str,
     /// Author and year, or section of the paper.
     pub source: &'static str,
-    /// Cost when on, measured: instructions of a step more than without it (`scripts/step-instructions` counts alike).
+    /// Cost when on, measured: instructions of a step more than without it (`scripts/measure step-instructions` counts alike).
     pub price: &'static str,
     /// Part of a scene that switches it on.
     pub example: &'static str,

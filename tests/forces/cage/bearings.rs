@@ -213,7 +213,7 @@ fn invariant_a_snapshot_in_mid_contact_goes_on_to_the_same_bits() {
 #[test]
 fn invariant_work_of_a_step_is_linear_in_the_number_of_balls() {
     // A ring of balls on a pitch circle that grows with their number: evaluations of contacts and corrections a step, counted.
-    // Instructions are counted by scripts/ball-cost.
+    // Instructions are counted by scripts/measure ball-cost.
     let work = |balls: u32| {
         let changes = [
             ("bearing.balls", &*balls.to_string()),
