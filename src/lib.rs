@@ -228,6 +228,8 @@ pub mod contact;
 pub mod dynamics;
 pub mod effects;
 pub mod equilibrium;
+// A browser loads no units.
+#[cfg(not(target_family = "wasm"))]
 pub mod fmi;
 pub mod forces;
 pub mod interface;

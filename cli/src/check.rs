@@ -4,13 +4,13 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use cpu_time::ThreadTime;
 use roulement::analysis::auto;
 use roulement::catalogue::Shelf;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Rows, play};
 
+use crate::clock::ThreadTime;
 use crate::kinds::Kind;
 use crate::sweep::all::threads as cores;
 use crate::sweep::cases::Cases;

@@ -2,7 +2,9 @@
 //! connected packages, gearboxes from other programs' files, kinds of files and what is in them, and the study of accuracy against CPU time.
 
 pub mod cage;
+#[cfg(not(target_family = "wasm"))]
 pub mod check;
+pub mod clock;
 pub mod cost;
 pub mod doubt;
 pub mod duty;
@@ -14,10 +16,13 @@ pub mod fits;
 pub mod kinds;
 pub mod measure;
 pub mod modes;
+#[cfg(not(target_family = "wasm"))]
 pub mod package;
 pub mod page;
+pub mod progress;
 pub mod report;
 pub mod rexs;
 pub mod sweep;
+#[cfg(not(target_family = "wasm"))]
 pub mod system;
 pub mod watch;

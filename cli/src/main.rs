@@ -1,4 +1,6 @@
 //! Command line of roulement.
+// In a browser there are fewer commands.
+#![cfg_attr(target_family = "wasm", allow(dead_code, unused_imports))]
 
 mod commands;
 

@@ -14,6 +14,14 @@ use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Single, values};
 
+/// [-] stiffness over the root of both on the diagonal below which it is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// A number, or 0 where it is below a floor: what is left of digits that cancel, or less than is printed of it. Its sign would be chance.
+fn without_rounding(value: f64, floor: f64) -> f64 {
+    if value.abs() < floor { 0.0 } else { value }
+}
+
 /// Reported quantities of a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallReport {
@@ -134,8 +142,11 @@ impl Equilibrium {
         let column = |get: fn(&BallReport) -> f64| -> Vec<f64> {
             self.balls.iter().map(|ball| get(&ball.report)).collect()
         };
-        let [x, y, z, ry, rz] = self.displacement;
-        let [fx, fy, fz, my, mz] = self.load;
+        let printed = |values: [f64; 5], [first, last]: [f64; 2]| {
+            std::array::from_fn(|k| without_rounding(values[k], if k < 3 { first } else { last }))
+        };
+        let [x, y, z, ry, rz] = printed(self.displacement, [5e-11, 5e-10]);
+        let [fx, fy, fz, my, mz] = printed(self.load, [5e-4, 5e-6]);
         let stiffness: Vec<Vec<f64>> =
             self.stiffness.row_iter().map(|row| row.iter().copied().collect()).collect();
         let mut report = json!({
@@ -192,8 +203,11 @@ impl Equilibrium {
 
 impl fmt::Display for Equilibrium {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z, ry, rz] = self.displacement;
-        let [fx, fy, fz, my, mz] = self.load;
+        let printed = |values: [f64; 5], [first, last]: [f64; 2]| {
+            std::array::from_fn(|k| without_rounding(values[k], if k < 3 { first } else { last }))
+        };
+        let [x, y, z, ry, rz] = printed(self.displacement, [5e-11, 5e-10]);
+        let [fx, fy, fz, my, mz] = printed(self.load, [5e-4, 5e-6]);
         let race = self.race.name();
         writeln!(f, "{race} race    x {:.4} um  y {:.4} um  z {:.4} um", x * 1e6, y * 1e6, z * 1e6)?;
         writeln!(f, "              ry {:.6} mrad  rz {:.6} mrad", ry * 1e3, rz * 1e3)?;
@@ -228,9 +242,11 @@ impl fmt::Display for Equilibrium {
             writeln!(f, "              {}\n", life.load_rests_on.words())?;
         }
         writeln!(f, "stiffness     external load Fx, Fy, Fz [N], My, Mz [N m] by x, y, z [m], ry, rz [rad]")?;
-        for row in self.stiffness.row_iter() {
-            let row: Vec<String> = row.iter().map(|value| format!("{value:12.4e}")).collect();
-            writeln!(f, "              {}", row.join(" "))?;
+        let size = |i: usize| self.stiffness[(i, i)].abs().sqrt();
+        for i in 0..5 {
+            let floor = |j: usize| ROUNDING * size(i) * size(j);
+            let row = (0..5).map(|j| format!("{:12.4e}", without_rounding(self.stiffness[(i, j)], floor(j))));
+            writeln!(f, "              {}", row.collect::<Vec<_>>().join(" "))?;
         }
         if let Some(warning) = self.warning() {
             writeln!(f, "              {}", warning.trim_start_matches("warning: "))?;
@@ -245,8 +261,8 @@ impl fmt::Display for Equilibrium {
                 ball.azimuth.to_degrees(),
                 b.inner_load,
                 b.outer_load,
-                b.inner_contact_angle.to_degrees(),
-                b.outer_contact_angle.to_degrees()
+                without_rounding(b.inner_contact_angle.to_degrees(), 5e-5),
+                without_rounding(b.outer_contact_angle.to_degrees(), 5e-5)
             )?;
         }
         let reports = || self.balls.iter().map(|ball| &ball.report);

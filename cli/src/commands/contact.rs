@@ -9,13 +9,13 @@ use std::time::Instant;
 
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::single_contact::{ContactError, Law, RollingContact, RollingForces, ScaledContact};
 use roulement::kalker::half_space::LARGEST_CHANGE;
 use roulement::schema::regular;
 use roulement_cli::exact::answer;
 use roulement_cli::exact::cache::Cache;
 use roulement_cli::field::{figure, write_cells, write_head};
+use roulement_cli::progress::{self, ProgressBar};
 
 use super::interrupt::{INTERRUPTED, heeded_interrupt};
 use super::{film, tell};
@@ -224,11 +224,5 @@ fn exact(
 }
 
 fn progress_bar() -> ProgressBar {
-    let bar = ProgressBar::new(0);
-    if let Ok(style) =
-        ProgressStyle::with_template("contacts {pos} of {len} [{bar:40}] {elapsed} elapsed, {eta} left")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar
+    progress::bar(Some(0), "contacts {pos} of {len} [{bar:40}] {elapsed} elapsed, {eta} left")
 }

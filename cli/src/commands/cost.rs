@@ -6,15 +6,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::Scene;
 use roulement::scene::machine::MachineScene;
 use roulement_cli::cost::json::of_study;
 use roulement_cli::cost::levers::Lever;
 use roulement_cli::cost::{Choice, SCENES, SceneStudy, StudyError, report, study_of};
+use roulement_cli::progress;
 use serde_json::Value;
 
 use super::interrupt::{INTERRUPTED, heeded_interrupt};
@@ -60,13 +59,7 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
             .collect::<Result<_, Box<dyn Error>>>()?,
     };
     fs::create_dir_all(&directory).map_err(|why| format!("cannot make {}: {why}", directory.display()))?;
-    let bar = ProgressBar::no_length();
-    if let Ok(style) =
-        ProgressStyle::with_template("[{bar:30}] {percent} %, {elapsed} elapsed, about {eta} left: {msg}")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
+    let bar = progress::bar(None, "[{bar:30}] {percent} %, {elapsed} elapsed, about {eta} left: {msg}");
     let mut studies: Vec<SceneStudy> = Vec::with_capacity(scenes.len());
     for (name, scene) in &scenes {
         match study_of(name, scene, &choice, &bar) {

@@ -77,7 +77,10 @@ const EXAMPLES: &[(&str, &[&str])] = &[
 
 /// Commands with their examples behind their help.
 pub fn with_examples(commands: Command) -> Command {
-    EXAMPLES.iter().fold(commands, |commands, (name, lines)| {
+    // In a browser some commands are missing.
+    let there =
+        EXAMPLES.iter().filter(|(name, _)| commands.find_subcommand(name).is_some()).collect::<Vec<_>>();
+    there.into_iter().fold(commands, |commands, (name, lines)| {
         let lines: String = lines.iter().map(|line| format!("\n  roulement {line}")).collect();
         commands.mut_subcommand(name, |command| command.after_help(format!("Examples:{lines}")))
     })

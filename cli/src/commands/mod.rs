@@ -2,6 +2,7 @@
 
 mod bearing;
 mod cage;
+#[cfg(not(target_family = "wasm"))]
 mod check;
 mod completions;
 mod contact;
@@ -24,23 +25,24 @@ mod run;
 mod scene;
 mod summary;
 mod sweep;
+#[cfg(not(target_family = "wasm"))]
 mod system;
 
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 use roulement::analysis::auto;
 use roulement::interface::model_description::{Edition, Version, all, render_as};
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
 use roulement_cli::kinds::{Kind, other_kind};
+#[cfg(not(target_family = "wasm"))]
 use roulement_cli::package::{libraries_beside, library_beside_executable, name_of, write_fmu};
+use roulement_cli::progress;
 
 /// 3-D dynamic ball bearing for gearbox co-simulation.
 #[derive(Parser)]
@@ -50,35 +52,44 @@ struct Arguments {
     command: Command,
 }
 
+/// What is done. In a browser only what the page of a bearing asks for (docs/try.md).
 #[derive(Subcommand)]
 enum Command {
     /// Simulate a scene: result table, plots, summary.
     Run(run::Options),
     /// Say what files are, whether they can be read, what they would run and how long that would take; with notes on numbers that are unusual.
+    #[cfg(not(target_family = "wasm"))]
     Check(check::Options),
     /// Solve the quasi-static equilibrium of a scene; of a shaft also its natural frequencies and critical speeds.
     Equilibrium(equilibrium::Options),
     /// Find the small motions of rings, shafts and cage about the running state, which grow or decay, over the speed.
+    #[cfg(not(target_family = "wasm"))]
     Modes(modes::Options),
     /// Find the life of bearings under given loads, each with its speed and share of the time; prints CSV.
     Rating(rating::Options),
     /// Push the cage of a scene by its weight, an offset and a kick, and tell whether it is stable, rattles or whirls.
+    #[cfg(not(target_family = "wasm"))]
     Cage(cage::Options),
     /// Simulate many cases of a scene on all cores: a table of keys and values, or ranges; resumable.
+    #[cfg(not(target_family = "wasm"))]
     Sweep(sweep::Options),
     /// Print what may stand in a scene file: every key, or a JSON schema for editors.
+    #[cfg(not(target_family = "wasm"))]
     Scene(scene::Options),
     /// Write a scene of a catalogue bearing, by name or by dimensions and load ratings, with estimated internal geometry.
     Bearing(bearing::Options),
     /// Read a gearbox from a REXS file, XML, JSON or zip, and write it as a machine: shafts, gears, bearings, oil, loads and their spectrum.
+    #[cfg(not(target_family = "wasm"))]
     Import(import::Options),
     /// Write a machine as a REXS file, for programs that read gearboxes.
+    #[cfg(not(target_family = "wasm"))]
     Export(export::Options),
     /// List the effects of a scene: which are on, which that are off would matter and by how much.
     Effects(effects::Options),
     /// Make one page of results: drawing, plots, spectra, playback; of a run, of several, or of a sweep.
     Report(report::Options),
     /// Pack a scene, or a shaft with its bearings, as a co-simulation FMU of FMI 2.0 or 3.0.
+    #[cfg(not(target_family = "wasm"))]
     Fmu {
         /// Scene file, or file of a system.
         scene: PathBuf,
@@ -112,18 +123,25 @@ enum Command {
         date: Option<String>,
     },
     /// Write packages that are connected, as an SSP file and as an OSP system structure for libcosim, from one description.
+    #[cfg(not(target_family = "wasm"))]
     System(system::Options),
     /// Write where chosen contacts of a run stick and slip at chosen times; CSV.
+    #[cfg(not(target_family = "wasm"))]
     Field(field::Options),
     /// Evaluate single rolling contacts of a CSV table, and print CSV; or the oil film of a scene's contact over slip and speed.
+    #[cfg(not(target_family = "wasm"))]
     Contact(contact::Options),
     /// Identify the spin coupling of the regularised creep law against Kalker's nonlinear theory.
+    #[cfg(not(target_family = "wasm"))]
     Identify(identify::Options),
     /// Measure error against CPU time of every setting that trades accuracy for speed.
+    #[cfg(not(target_family = "wasm"))]
     Cost(cost::Options),
     /// Print what a shell completes the commands and their options by: bash, elvish, fish, powershell or zsh.
+    #[cfg(not(target_family = "wasm"))]
     Completions(completions::Options),
     /// Print the model description of a scene's package.
+    #[cfg(not(target_family = "wasm"))]
     Describe {
         /// Scene file.
         scene: PathBuf,
@@ -195,13 +213,7 @@ fn say(text: &str) -> io::Result<()> {
 
 /// Makes a study of many runs, which tells of another one that has ended, and of how many, and shows them on stderr.
 fn with_count_of_runs<T>(study: impl FnOnce(&(dyn Fn(usize) + Sync)) -> T) -> T {
-    let bar = ProgressBar::new(0);
-    if let Ok(style) =
-        ProgressStyle::with_template("{pos} of {len} runs [{bar:40}] {elapsed} elapsed, {eta} left")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
+    let bar = progress::bar(Some(0), "{pos} of {len} runs [{bar:40}] {elapsed} elapsed, {eta} left");
     let made = study(&|runs| {
         bar.set_length(runs as u64);
         bar.inc(1);
@@ -219,11 +231,15 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
     let given = Arguments::from_arg_matches(&commands.clone().get_matches())?;
     match given.command {
         Command::Run(options) => return run::run(options),
+        #[cfg(not(target_family = "wasm"))]
         Command::Sweep(options) => return sweep::run(options),
         Command::Equilibrium(options) => equilibrium::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Modes(options) => modes::run(&options)?,
         Command::Rating(options) => rating::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Cage(options) => cage::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Fmu {
             scene,
             output,
@@ -246,19 +262,30 @@ pub fn run() -> Result<ExitCode, Box<dyn Error>> {
             write_fmu(&load_for(&scene, true)?, &edition, &name, &columns, &libraries, &output)?;
             say(&format!("{}\n", output.display()))?;
         }
+        #[cfg(not(target_family = "wasm"))]
         Command::Scene(options) => scene::run(&options)?,
         Command::Bearing(options) => bearing::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Check(options) => return check::run(&options),
+        #[cfg(not(target_family = "wasm"))]
         Command::Import(options) => import::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Export(options) => export::run(&options)?,
         Command::Effects(options) => effects::run(&options)?,
         Command::Report(options) => report::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::System(options) => system::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Field(options) => return field::run(&options),
+        #[cfg(not(target_family = "wasm"))]
         Command::Contact(options) => return contact::run(&options),
+        #[cfg(not(target_family = "wasm"))]
         Command::Identify(options) => identify::run(&options)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Cost(options) => return cost::run(options),
+        #[cfg(not(target_family = "wasm"))]
         Command::Completions(options) => completions::run(&options, commands)?,
+        #[cfg(not(target_family = "wasm"))]
         Command::Describe { scene, fmi } => {
             let name = name_of(&scene);
             let machine = Machine::new(&load_for(&scene, true)?)?;

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use cpu_time::ThreadTime;
-use indicatif::{ProgressBar, ProgressStyle};
 use roulement::simulation::machine::Machine;
 use roulement::simulation::outputs::Outputs;
 use roulement::simulation::play::{Rows, play_observed};
 use roulement::simulation::system::SystemOutputs;
+use roulement_cli::clock::ThreadTime;
 use roulement_cli::error::Run;
+use roulement_cli::progress::{self, ProgressBar};
 use roulement_cli::report::results::ResultsError;
 use roulement_cli::report::tables::Tables;
 use roulement_cli::report::thinned::Thinned;
@@ -148,12 +148,7 @@ impl Player {
 
 /// A bar with simulated time and an estimate of what is left.
 fn progress_bar(points: u64, words: &str) -> ProgressBar {
-    let bar = ProgressBar::new(points);
     let template =
         format!("{words}simulated {{msg}} [{{bar:40}}] {{percent}} %, {{elapsed}} elapsed, {{eta}} left");
-    if let Ok(style) = ProgressStyle::with_template(&template) {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
+    progress::bar(Some(points), &template)
 }

@@ -6,14 +6,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use roulement::scene::machine::MachineScene;
 use roulement_cli::error::MOST_ROUNDS;
 use roulement_cli::kinds::Kind;
 use roulement_cli::page::record;
+use roulement_cli::progress;
 use roulement_cli::report::results::Choice;
 use roulement_cli::sweep::all::{Sweep, threads as cores};
 use roulement_cli::sweep::case::Wanted;
@@ -127,13 +126,10 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
         (damaged > 0).then(|| format!("{damaged} of the finished cases were damaged or changed: run again")),
     );
     let interrupted = heeded_interrupt()?;
-    let bar = ProgressBar::new(missing.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template(
+    let bar = progress::bar(
+        Some(missing.len() as u64),
         "{pos} of {len} cases [{bar:40}] {percent} %, {elapsed} elapsed, {eta} left",
-    ) {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
+    );
     let ran = sweep.run(&missing, threads.map_or_else(cores, usize::from), &interrupted, || bar.inc(1));
     bar.finish_and_clear();
     // Also of a sweep that could not go on.

@@ -1,6 +1,6 @@
 //! CPU time and instructions of a stretch of this thread's work.
 
-use cpu_time::ThreadTime;
+use crate::clock::ThreadTime;
 
 /// Cost of a stretch of work.
 #[derive(Clone, Copy, Debug)]

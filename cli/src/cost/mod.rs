@@ -19,11 +19,11 @@ pub mod report;
 mod settling;
 pub mod table;
 
+use crate::progress::ProgressBar;
 use std::num::NonZero;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use indicatif::ProgressBar;
 use thiserror::Error;
 
 use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};

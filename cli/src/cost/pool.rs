@@ -1,9 +1,9 @@
 //! The runs of a study on all cores. What a run gives does not depend on the others, but for its time.
 
+use crate::progress::ProgressBar;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use indicatif::ProgressBar;
 use roulement::scene::CreepLaw;
 
 use super::levers::{CreepModel, Level, Setting};

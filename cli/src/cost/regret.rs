@@ -7,7 +7,6 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use indicatif::ProgressBar;
 use roulement::scene::Solver;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
@@ -17,6 +16,7 @@ use super::levers::{Lever, Setting, usual_settings};
 use super::pool::{self, Job};
 use super::{Choice, StudyError};
 use crate::error::{Difference, Run};
+use crate::progress::ProgressBar;
 use crate::watch::Watch;
 
 /// [-] promised errors of means, and of histories but that of the friction torque.

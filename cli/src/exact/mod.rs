@@ -5,12 +5,12 @@
 
 pub mod cache;
 
+use crate::progress::ProgressBar;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use indicatif::ProgressBar;
 use roulement::analysis::single_contact::ScaledContact;
 use roulement::kalker::half_space::{HalfSpaceError, Refined};
 

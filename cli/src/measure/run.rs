@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use cpu_time::ThreadTime;
 use nalgebra::Vector3;
 use roulement::effects::estimate::Changes;
 use roulement::effects::rating::Sums;
@@ -15,6 +14,7 @@ use roulement::simulation::machine::Machine;
 use roulement::simulation::play::{Observer, Rows, play_observed};
 
 use super::changed::Changed;
+use crate::clock::ThreadTime;
 use crate::report::means::Mean;
 use crate::watch::{BearingSeen, Watch};
 

@@ -11,6 +11,8 @@ use roulement::simulation::machine::{Machine, MachineError};
 use roulement::simulation::motions::Motion;
 use roulement::simulation::system::{at_speed, largest_speed};
 
+use crate::sweep::all::{on_threads, threads};
+
 pub use figure::{write as write_figure, write_growths};
 pub use lines::{Line, Meeting, meetings};
 pub use table::{to_csv, to_json, to_text};
@@ -155,12 +157,11 @@ pub fn judged(scene: &MachineScene, time: f64) -> Option<Vec<Found>> {
     let mut motions = match in_pockets_with_play(scene) {
         None => of(scene)?,
         // Each runs a machine of its own.
-        Some(free) => std::thread::scope(|threads| {
-            let held = threads.spawn(|| growing_in_ideal_cages(scene, &asked));
-            let free = of(&free);
-            let held = held.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            free.map(|motions| motions.into_iter().chain(held).collect::<Vec<_>>())
-        })?,
+        Some(free) => {
+            let look =
+                |index| if index == 0 { of(&free) } else { Some(growing_in_ideal_cages(scene, &asked)) };
+            on_threads(2, threads(), look).into_iter().collect::<Option<Vec<_>>>()?.concat()
+        }
     };
     motions.sort_by(|a, b| b.motion.growth.total_cmp(&a.motion.growth));
     Some(motions)

@@ -4,7 +4,11 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
+/// The page's program and style, built from `report/` and compressed (gzip). In a browser the page around this program has them.
+#[cfg(target_family = "wasm")]
+const BUNDLE: &[u8] = &[];
 /// The page's program and style, built from `report/` and compressed (gzip).
+#[cfg(not(target_family = "wasm"))]
 const BUNDLE: &[u8] = include_bytes!("../../../report/bundle/report.js.gz");
 
 /// A whole page of a title, data, and words for readers without scripts.

@@ -33,7 +33,7 @@ pub struct WrittenBearing {
     pub level: Option<Level>,
     /// Its stiffness, in place of a scene: springs instead of balls.
     pub stiffness: Option<StiffnessSection>,
-    /// Its cylindrical rollers, in place of a scene.
+    /// Its cylindrical or tapered rollers, in place of a scene.
     pub rollers: Option<RollersSection>,
     /// Name of the shaft that it sits on; needed where there are several.
     pub shaft: Option<String>,
