@@ -70,6 +70,13 @@ export class Run {
         if (name !== 'time' && !run.series.has(name)) run.series.set(name, { name, unit, t, v: values, constant });
       }
     }
+    for (const [name, { unit, t, v, constant }] of [...run.series]) {
+      const acceleration = name.replace(/\.velocity\.([xyz])$/, '.acceleration.$1');
+      if (acceleration === name || unit !== 'm/s' || run.series.has(acceleration) || t.length < 2) continue;
+      // By how much it has changed since the row before: none comes before the first.
+      const values = Float64Array.from(v, (_, i) => (i && t[i] > t[i - 1] ? (v[i] - v[i - 1]) / (t[i] - t[i - 1]) : 0));
+      run.series.set(acceleration, { name: acceleration, unit: 'm/s2', t, v: values, constant });
+    }
     run.history = run.grids.at(-1);
     run.times = run.history.columns.get('time').values;
     run.begin = run.times[0];

@@ -40,7 +40,10 @@ impl PartColumns {
         let in_bearings = |pattern: &str| {
             scene.bearings().into_iter().any(|(bearing, scene)| {
                 let fit = |name: &str| fits(name, pattern) || fits(&named(bearing, name), pattern);
-                Columns::that(scene, Window::default(), |_| true).names().skip(1).any(|(name, _)| fit(name))
+                Columns::that(scene, Window::default(), |_| true, |_| true)
+                    .names()
+                    .skip(1)
+                    .any(|(name, _)| fit(name))
             })
         };
         let missing =
@@ -49,12 +52,19 @@ impl PartColumns {
             return Err(ResultsError::Column(pattern.clone()));
         }
         let of = |(bearing, scene): (&str, &Scene)| {
-            Columns::that(scene, choice.window, |name| {
-                choice.wants(name) || choice.wants(&named(bearing, name))
+            let own = |name: &str| named(bearing, name);
+            let is_chosen = |name: &str| choice.wants(name) || choice.wants(&own(name));
+            Columns::that(scene, choice.window, is_chosen, |name| {
+                choice.asks(name) || choice.asks(&own(name))
             })
         };
         let whole = !own().any(|name| choice.wants(name));
-        let of_table = own().map(|name| whole || choice.wants(name));
+        // Accelerations stand behind the others.
+        let others = shaft::columns(system).len() - 1;
+        let of_table = own().enumerate().map(|(index, name)| match index < others {
+            true => whole || choice.wants(name),
+            false => choice.asks(name),
+        });
         Ok(Self {
             bearings: scene.bearings().into_iter().map(of).collect(),
             shaft: Some(std::iter::once(true).chain(of_table).collect()),
@@ -88,7 +98,7 @@ impl ShaftColumns {
         let own = variables.rows().iter().enumerate().filter(|(_, row)| is_own(row));
         let chosen = own.filter(|(_, row)| choice.wants(&row.name)).map(|(reference, _)| reference);
         let names = variables.rows().iter().map(|row| if is_own(row) { row.name.as_str() } else { "" });
-        let accelerated = accelerated(&names.collect::<Vec<_>>(), |name| choice.wants(name));
+        let accelerated = accelerated(&names.collect::<Vec<_>>(), |name| choice.asks(name));
         let chosen = chosen.collect();
         Self { variables, chosen, accelerated, accelerations: Accelerations::default() }
     }

@@ -55,6 +55,11 @@ impl Choice {
     pub fn wants(&self, name: &str) -> bool {
         self.columns.is_empty() || self.columns.iter().any(|pattern| fits(name, pattern))
     }
+
+    /// Is an acceleration chosen? By a pattern that names it alone: its values go by the distance of rows, those of all other columns do not.
+    pub fn asks(&self, acceleration: &str) -> bool {
+        self.columns.iter().any(|pattern| pattern.contains("acceleration") && fits(acceleration, pattern))
+    }
 }
 
 /// \[s] span of time, ends included.
@@ -111,7 +116,7 @@ pub fn fits(name: &str, pattern: &str) -> bool {
     }
 }
 
-/// The columns of a result table: the time, those variables of a scene that are chosen, and accelerations.
+/// The columns of a result table: the time, those variables of a scene that are chosen, and accelerations that are asked for.
 pub struct Columns {
     variables: Variables,
     /// Rows of the variable table that are written.
@@ -123,11 +128,11 @@ pub struct Columns {
 }
 
 /// Velocities among columns, by their index, with the names of the accelerations that a rule chooses; not those that are columns themselves.
-pub(super) fn accelerated(names: &[&str], is_chosen: impl Fn(&str) -> bool) -> Vec<(usize, String)> {
+pub(super) fn accelerated(names: &[&str], is_asked: impl Fn(&str) -> bool) -> Vec<(usize, String)> {
     let of = |(index, velocity): (usize, &&str)| {
         let (place, component) = acceleration::of_velocity(velocity)?;
         let name = acceleration::name(place, component);
-        (is_chosen(&name) && !names.contains(&name.as_str())).then_some((index, name))
+        (is_asked(&name) && !names.contains(&name.as_str())).then_some((index, name))
     };
     names.iter().enumerate().filter_map(of).collect()
 }
@@ -138,26 +143,32 @@ impl Columns {
     /// # Errors
     /// If a chosen column is not there.
     pub fn new(scene: &Scene, choice: &Choice) -> Result<Self, ResultsError> {
-        let all = Self::that(scene, Window::default(), |_| true);
+        let all = Self::that(scene, Window::default(), |_| true, |_| true);
         let missing = |pattern: &&String| !all.names().skip(1).any(|(name, _)| fits(name, pattern));
         match choice.columns.iter().find(missing) {
             Some(pattern) => Err(ResultsError::Column(pattern.clone())),
-            None => Ok(Self::that(scene, choice.window, |name| choice.wants(name))),
+            None => Ok(Self::that(scene, choice.window, |name| choice.wants(name), |name| choice.asks(name))),
         }
     }
 
-    /// Those that a rule chooses by their names.
-    pub(super) fn that(scene: &Scene, window: Window, is_chosen: impl Fn(&str) -> bool) -> Self {
+    /// Those that a rule chooses by their names, and accelerations that another one asks for.
+    pub(super) fn that(
+        scene: &Scene,
+        window: Window,
+        is_chosen: impl Fn(&str) -> bool,
+        is_asked: impl Fn(&str) -> bool,
+    ) -> Self {
         let variables = Variables::moving(scene, true);
         let names: Vec<&str> = variables.rows().iter().map(|row| row.name.as_str()).collect();
-        let accelerated = accelerated(&names, &is_chosen);
+        let accelerated = accelerated(&names, is_asked);
         let chosen = (0..names.len()).filter(|i| is_chosen(names[*i])).collect();
         Self { variables, chosen, accelerated, accelerations: Accelerations::default(), window }
     }
 
     /// Those of a bearing of a machine that are chosen with its name before them; unknown names are passed over.
     pub(super) fn named(scene: &Scene, bearing: &str, choice: &Choice) -> Self {
-        Self::that(scene, choice.window, |name| choice.wants(&named(bearing, name)))
+        let own = |name: &str| named(bearing, name);
+        Self::that(scene, choice.window, |name| choice.wants(&own(name)), |name| choice.asks(&own(name)))
     }
 
     /// Names and units, the time first.

@@ -84,19 +84,26 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
         let (what, unit) = if component < 3 { ("force", "N") } else { ("moment", "N m") };
         (format!("{}.{what}.{}", load.name, ["x", "y", "z"][component % 3]), unit)
     }));
+    let velocities = all_places(scene)
+        .flat_map(|place| ["x", "y", "z"].map(|axis| (format!("{place}.velocity.{axis}"), "m/s")));
+    columns.extend(velocities);
     columns
 }
 
-/// These columns, then the accelerations of all places of shafts and housings.
+/// These columns, then the accelerations of all places.
 pub fn columns_with_accelerations(scene: &SystemScene) -> Vec<(String, &'static str)> {
+    let accelerations = all_places(scene)
+        .flat_map(|place| ["x", "y", "z"].map(|axis| (acceleration::name(&place, axis), acceleration::UNIT)));
+    columns(scene).into_iter().chain(accelerations).collect()
+}
+
+/// All places of shafts and housings whose motion is known.
+fn all_places(scene: &SystemScene) -> impl Iterator<Item = String> {
     let of_housing = |index: usize| {
         let housing = &scene.housings[index].name;
         places_of_housing(scene, index).map(move |place| format!("{housing}.{place}"))
     };
-    let places = places(scene).into_iter().chain((0..scene.housings.len()).flat_map(of_housing));
-    let accelerations = places
-        .flat_map(|place| ["x", "y", "z"].map(|axis| (acceleration::name(&place, axis), acceleration::UNIT)));
-    columns(scene).into_iter().chain(accelerations).collect()
+    places(scene).into_iter().chain((0..scene.housings.len()).flat_map(of_housing))
 }
 
 /// Velocities [m/s] of these places.
@@ -162,6 +169,7 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
         }
     }
     row.extend(&outputs.holding);
+    row.extend(velocities(outputs));
     row
 }
 

@@ -13,7 +13,7 @@ use roulement::simulation::system::System;
 use crate::gears::{LIGHT, gear_pair};
 use crate::tables::{Noise, Row, compare, count, row};
 
-const DOCUMENT: &str = "../docs/stability.md";
+const DOCUMENT: &str = "docs/stability.md";
 const ANGULAR: &str = include_str!("../../../scenes/thrust.toml");
 const GROOVE: &str = include_str!("../../../scenes/radial.toml");
 const CAGE: &str = include_str!("../../../scenes/cage.toml");
