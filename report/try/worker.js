@@ -15,7 +15,7 @@ async function run(args, files) {
   const text = [[], []];
   const into = of => new ConsoleStdout(bytes => text[of].push(bytes.slice()));
   const folder = new PreopenDirectory('.', new Map(Object.entries(files).map(([name, content]) => [name, new File(new TextEncoder().encode(content))])));
-  const wasi = new WASI(['roulement', ...args], [], [new OpenFile(new File([])), into(0), into(1), folder]);
+  const wasi = new WASI(['roulement', ...args], [], [new OpenFile(new File([])), into(0), into(1), folder], { debug: false });
   const instance = await WebAssembly.instantiate(await program, { wasi_snapshot_preview1: wasi.wasiImport });
   let code = 1;
   try {

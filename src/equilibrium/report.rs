@@ -15,7 +15,7 @@ use crate::model::{Conditions, Model};
 use crate::numerics::scalar::{Single, values};
 
 /// [-] stiffness over the root of both on the diagonal below which it is rounding.
-const ROUNDING: f64 = 1e-13;
+const ROUNDING: f64 = 1e-12;
 
 /// A number, or 0 where it is below a floor: what is left of digits that cancel, or less than is printed of it. Its sign would be chance.
 fn without_rounding(value: f64, floor: f64) -> f64 {

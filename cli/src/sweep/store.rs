@@ -243,8 +243,10 @@ pub fn aside(path: &Path) -> PathBuf {
     use std::sync::LazyLock;
     use std::sync::atomic::{AtomicU64, Ordering};
     static COUNT: AtomicU64 = AtomicU64::new(0);
-    static CHANCE: LazyLock<u64> = LazyLock::new(|| RandomState::new().hash_one(std::process::id()));
-    let mark = format!("part-{}-{:x}-{}", std::process::id(), *CHANCE, COUNT.fetch_add(1, Ordering::Relaxed));
+    // In a browser there is one process without a number.
+    let process = || if cfg!(target_family = "wasm") { 0 } else { std::process::id() };
+    static CHANCE: LazyLock<u64> = LazyLock::new(|| RandomState::new().hash_one("part"));
+    let mark = format!("part-{}-{:x}-{}", process(), *CHANCE, COUNT.fetch_add(1, Ordering::Relaxed));
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     path.with_file_name(format!(".{mark}-{name}"))
 }
