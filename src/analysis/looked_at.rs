@@ -11,6 +11,9 @@ use crate::model::Model;
 use crate::model::bodies::Race;
 use crate::scene::{Drive, Scene, Schedule};
 
+/// \[rad] lead of a ball in a revolution that is rounding.
+const ALIKE: f64 = 1e-12;
+
 /// Input in an equilibrium that depends on how gyroscopic moments are carried.
 pub(super) fn under(
     scene: &Scene,
@@ -137,8 +140,10 @@ fn spacing(scene: &Scene, model: &Model, input: &EquilibriumInput, solution: &Eq
     let falls = gravity > 0.0 && !flies && unheld;
     let starts = [&scene.load.inner_speed, &scene.load.outer_speed].map(|speed| speed.at(0.0));
     let limit = |(ball, speed): (&BallEquilibrium, &f64)| ball.report.inner_load * (speed - mean).abs();
+    // Balls that roll alike differ by rounding.
+    let span = range[1] - range[0];
     Spacing {
-        lead: (range[1] - range[0]) * orbit,
+        lead: if span < ALIKE { 0.0 } else { span * orbit },
         gap,
         slipping: input.friction * orbit * solution.balls.iter().zip(&speeds).map(limit).sum::<f64>(),
         unheld,

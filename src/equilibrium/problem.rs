@@ -13,7 +13,7 @@ use crate::numerics::scalar::Single;
 use crate::numerics::size::{larger, largest};
 
 /// [-] accepted residual over the size of the forces at work.
-const TOLERANCE: f64 = 1e-11;
+pub(super) const TOLERANCE: f64 = 1e-11;
 /// [-] residual below which steps must lower the residual, even where the search follows the potential.
 const NEAR: f64 = 1e-4;
 /// [-] thrust over radial load that settles which sides of the grooves carry it: two states at once were seen to 0.005.

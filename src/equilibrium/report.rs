@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::Equilibrium;
 use super::ball::{BallBalance, D};
+use super::problem::TOLERANCE;
 use crate::contact::geometry::GrooveContact;
 use crate::contact::shoulder::largest_share;
 use crate::model::bodies::{PerRace, Race};
@@ -217,7 +218,12 @@ impl fmt::Display for Equilibrium {
         )?;
         writeln!(f, "              My {my:.5} N m  Mz {mz:.5} N m         is the opposite)")?;
         writeln!(f, "cage speed    {:.4} rad/s", self.cage_speed)?;
-        writeln!(f, "residual      {:.2e} of the load, {} iterations\n", self.residual, self.iterations)?;
+        // Below that its digits are those of the processor.
+        let residual = match self.residual < TOLERANCE {
+            true => format!("below {TOLERANCE:e}"),
+            false => format!("{:.2e}", self.residual),
+        };
+        writeln!(f, "residual      {residual} of the load, {} iterations\n", self.iterations)?;
         if let Some(growth) = &self.growth {
             let (clearance, angle) = (growth.clearance * 1e6, growth.contact_angle.to_degrees());
             writeln!(f, "clearance     {clearance:.3} um, free contact angle {angle:.4} deg (grown)")?;
