@@ -1,7 +1,7 @@
 // Runs the program: one command after the other, each with files of its own.
 
 import { XzReadableStream } from 'xz-decompress';
-import { WASI, File, OpenFile, PreopenDirectory, ConsoleStdout } from '@bjorn3/browser_wasi_shim';
+import { WASI, Directory, File, OpenFile, PreopenDirectory, ConsoleStdout } from '@bjorn3/browser_wasi_shim';
 
 let program = null;
 
@@ -14,7 +14,16 @@ async function compiled(bytes) {
 async function run(args, files) {
   const text = [[], []];
   const into = of => new ConsoleStdout(bytes => text[of].push(bytes.slice()));
-  const folder = new PreopenDirectory('.', new Map(Object.entries(files).map(([name, content]) => [name, new File(new TextEncoder().encode(content))])));
+  const root = new Map();
+  for (const [path, content] of Object.entries(files)) {
+    const [name, ...folders] = path.split('/').reverse();
+    const inside = folders.reverse().reduce((contents, folder) => {
+      if (!contents.has(folder)) contents.set(folder, new Directory(new Map()));
+      return contents.get(folder).contents;
+    }, root);
+    inside.set(name, new File(new TextEncoder().encode(content)));
+  }
+  const folder = new PreopenDirectory('.', root);
   const wasi = new WASI(['roulement', ...args], [], [new OpenFile(new File([])), into(0), into(1), folder], { debug: false });
   const instance = await WebAssembly.instantiate(await program, { wasi_snapshot_preview1: wasi.wasiImport });
   let code = 1;
