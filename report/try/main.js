@@ -29,6 +29,8 @@ function controls() {
   return FIELDS.map(field);
 }
 
+/** An angle in degrees; what is rounding of none is 0. */
+const degrees = angle => digits(Math.abs(angle) < 1e-8 ? 0 : (angle * 180) / Math.PI, 4);
 const mm = value => `${digits(value * 1e3, 4)}\u202fmm`;
 
 /** Loads of all balls over their azimuth, seen from +x. */
@@ -55,7 +57,7 @@ function contacts(row, balls) {
   const of = race => {
     const most = Array.from({ length: balls }, (_, i) => i + 1).reduce((one, ball) => (row[`ball[${ball}].${race}.load`] > row[`ball[${one}].${race}.load`] ? ball : one), 1);
     const get = name => row[`ball[${most}].${race}.${name}`];
-    return [race, String(most), `${digits(get('load'), 5)} N`, `${digits((get('contact_angle') * 180) / Math.PI, 4)}\u00b0`, mm(2 * get('semi_axis_transverse')), mm(2 * get('semi_axis_rolling')), `${digits(get('peak_pressure') * 1e-6, 4)} MPa`, ...(get('film_ratio') === undefined ? [] : [digits(get('film_ratio'), 3)])];
+    return [race, String(most), `${digits(get('load'), 5)} N`, `${degrees(get('contact_angle'))}\u00b0`, mm(2 * get('semi_axis_transverse')), mm(2 * get('semi_axis_rolling')), `${digits(get('peak_pressure') * 1e-6, 4)} MPa`, ...(get('film_ratio') === undefined ? [] : [digits(get('film_ratio'), 3)])];
   };
   const rows = ['inner', 'outer'].map(of);
   return table(['race', 'ball', 'load', 'contact angle', 'ellipse across', 'along', 'peak pressure', ...(rows[0].length > 7 ? ['film / roughness'] : [])], rows, { numbers: [1, 2, 3, 4, 5, 6, 7], caption: 'The most loaded contact of each race' });
@@ -64,7 +66,7 @@ function contacts(row, balls) {
 function losses(row) {
   const names = { 'loss.sliding': 'sliding and spin of balls', 'loss.rolling': 'rolling resistance of the oil', 'loss.hysteresis': 'hysteresis', 'loss.drag': 'drag of the medium', 'loss.cage': 'cage', 'loss.damping': 'damping of contacts' };
   const power = Object.entries(names).filter(([name]) => row[name] > 0).map(([name, words]) => [words, `${digits(row[name], 4)} W`, `${digits((100 * row[name]) / row['loss.total'], 3)} %`]);
-  const lines = [['cage', 'frequency.cage'], ['balls over a place of the outer race, BPFO', 'frequency.outer'], ['balls over a place of the inner race, BPFI', 'frequency.inner'], ['turns of a ball, BSF', 'frequency.ball']].filter(([, name]) => name in row).map(([words, name]) => [words, `${digits(Math.abs(row[name]), 5)} Hz`]);
+  const lines = [['cage', 'frequency.ftf'], ['balls over a place of the outer race, BPFO', 'frequency.bpfo'], ['balls over a place of the inner race, BPFI', 'frequency.bpfi'], ['turns of a ball, BSF', 'frequency.bsf']].filter(([, name]) => name in row).map(([words, name]) => [words, `${digits(Math.abs(row[name]), 5)} Hz`]);
   return [power.length ? table(['losses at the start of a run', 'power', 'share'], power, { numbers: [1, 2] }) : null, lines.length ? table(['frequencies', 'Hz'], lines, { numbers: [1] }) : null].filter(Boolean);
 }
 
