@@ -1,8 +1,19 @@
-/* Loads the library of a package and steps it, as an importer on Windows does.
-   Usage: smoke.exe LIBRARY GUID RESOURCE_LOCATION */
+/* Loads the library of a package and steps it, as an importer does.
+   Usage: smoke LIBRARY GUID RESOURCE_LOCATION */
 #include <stdio.h>
 #include <stdlib.h>
+#ifdef _WIN32
 #include <windows.h>
+#define SYSTEM "Windows"
+#else
+#include <dlfcn.h>
+#define SYSTEM "Linux"
+typedef void *HMODULE;
+typedef void *FARPROC;
+#define LoadLibraryA(path) dlopen(path, RTLD_NOW)
+#define GetProcAddress dlsym
+#define GetLastError() 0ul
+#endif
 
 typedef struct {
     void *logger, *allocate, *free, *step_finished, *environment;
@@ -61,6 +72,6 @@ int main(int count, char **arguments) {
     double reached = 0;
     check(((int (*)(void *, int, double *))function("fmi2GetRealStatus"))(bearing, 2, &reached), "fmi2GetRealStatus");
     ((void (*)(void *))function("fmi2FreeInstance"))(bearing);
-    printf("Windows library: 34 functions, 20 steps to %g s\n", reached);
+    printf(SYSTEM " library: 34 functions, 20 steps to %g s\n", reached);
     return reached > 1.9e-3 ? 0 : 1;
 }

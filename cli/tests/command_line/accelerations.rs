@@ -81,7 +81,7 @@ fn independent_acceleration_of_a_shaft_and_of_its_housing_is_that_of_their_place
             let smooth: Vec<f64> = (4..at.len() - 4)
                 .map(|i| {
                     (-3..=4)
-                        .map(|k| own[(i as i32 + k) as usize] * (4.0 - (k as f64 - 0.5).abs()) / 16.0)
+                        .map(|k| own[(i as i32 + k) as usize] * (4.0 - (f64::from(k) - 0.5).abs()) / 16.0)
                         .sum()
                 })
                 .collect();
