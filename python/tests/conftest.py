@@ -10,6 +10,18 @@ import pytest
 import roulement
 
 ROOT = Path(__file__).resolve().parents[2]
+# A shelf of one bearing, a catalogue of one's own.
+SHELF = """
+[[bearing]]
+designation = "6205"
+bore = "25 mm"
+outside = "52 mm"
+width = "15 mm"
+dynamic_load_rating = "14.1 kN"
+static_load_rating = "7.8 kN"
+balls = 9
+ball_diameter = "7.9 mm"
+"""
 PROGRAM = Path(os.environ.get("ROULEMENT_BIN", ROOT / "target" / "release" / "roulement"))
 
 

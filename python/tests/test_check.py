@@ -1,7 +1,7 @@
 """Files that are looked at: as the command line says it."""
 
 import roulement
-from conftest import ROOT, program
+from conftest import ROOT, SHELF, program
 
 
 def test_files_are_told_as_the_command_line_tells_them(tmp_path):
@@ -17,19 +17,7 @@ def test_files_are_told_as_the_command_line_tells_them(tmp_path):
 
 def test_a_shelf_of_ones_own_comes_before_the_table(tmp_path):
     shelf = tmp_path / "catalogue.toml"
-    shelf.write_text(
-        """
-[[bearing]]
-designation = "6205"
-bore = "25 mm"
-outside = "52 mm"
-width = "15 mm"
-dynamic_load_rating = "14.1 kN"
-static_load_rating = "7.8 kN"
-balls = 9
-ball_diameter = "7.9 mm"
-"""
-    )
+    shelf.write_text(SHELF)
     own = roulement.catalogue.bearing("6205", shelf=shelf)
     assert 'ball_diameter = "7.9 mm"' in own.source and "7.9375" in roulement.catalogue.bearing("6205").source
     assert len(roulement.catalogue.candidates("6205", shelf=shelf)) == 1

@@ -6,7 +6,7 @@ import tomllib
 import jsonschema
 import pytest
 import roulement
-from conftest import ROOT, program
+from conftest import ROOT, SHELF, program
 
 # The first words by which `roulement check` tells a kind of file.
 KINDS = {
@@ -16,17 +16,6 @@ KINDS = {
     "sweep": "a sweep",
     "system": "the description of a system",
 }
-SHELF = """
-[[bearing]]
-designation = "6205"
-bore = "25 mm"
-outside = "52 mm"
-width = "15 mm"
-dynamic_load_rating = "14.1 kN"
-static_load_rating = 7800
-balls = 9
-ball_diameter = "7.9 mm"
-"""
 
 
 @pytest.fixture(scope="module")

@@ -19,13 +19,13 @@ pub mod report;
 mod settling;
 pub mod table;
 
-use crate::progress::ProgressBar;
 use std::num::NonZero;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use thiserror::Error;
 
+use crate::progress::ProgressBar;
 use levers::{CreepModel, Level, Lever, ReferenceKind, Setting};
 use norms::{Comparison, Errors, Norm, errors};
 use pool::Job;

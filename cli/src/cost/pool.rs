@@ -1,6 +1,5 @@
 //! The runs of a study on all cores. What a run gives does not depend on the others, but for its time.
 
-use crate::progress::ProgressBar;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -8,6 +7,7 @@ use roulement::scene::CreepLaw;
 
 use super::levers::{CreepModel, Level, Setting};
 use super::{Choice, StudyError};
+use crate::progress::ProgressBar;
 
 /// A run to be done.
 pub struct Job<'a> {

@@ -5,7 +5,6 @@
 
 pub mod cache;
 
-use crate::progress::ProgressBar;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -14,6 +13,7 @@ use std::time::{Duration, Instant};
 use roulement::analysis::single_contact::ScaledContact;
 use roulement::kalker::half_space::{HalfSpaceError, Refined};
 
+use crate::progress::ProgressBar;
 use cache::{Cache, key};
 
 /// Time after which new answers are saved, so that an interrupted call is not lost.

@@ -52,6 +52,7 @@ fn independent_acceleration_of_a_race_is_that_of_its_forces_over_its_mass() {
         size = size.max(velocity.abs());
     }
     let blow = own.iter().fold(0.0f64, |most, of| most.max(of.abs()));
+    // Forces are summed by trapezoids between rows, and the velocity keeps what a step's tolerance leaves: 2e-3 holds both.
     assert!(blow > 500.0 && off < 2e-3 * size, "{blow} m/s2; {off} of {size} m/s");
     // The rows of a window are those of the whole run, its first one, too.
     let part =
@@ -87,6 +88,7 @@ fn independent_acceleration_of_a_shaft_and_of_its_housing_is_that_of_their_place
                 .collect();
             let size = by_places.iter().fold(0.0f64, |most, of| most.max(of.abs()));
             let off = by_places.iter().zip(&smooth).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            // Places and velocities are read from two polynomials of a step, whose second derivatives differ by a per cent or two.
             assert!(size > 0.1 && off < 0.02 * size, "{place} {axis}: {off} of {size} m/s2");
         }
     }
