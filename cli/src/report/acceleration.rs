@@ -1,7 +1,7 @@
 //! Accelerations as a sensor would tell them: by how much a velocity has changed since the row before, over the time between. Those of the integrator are
 //! unknowns of its steps: they follow from its stages, and change their sign from step to step where a motion is stiff.
 
-/// Where the first component of a velocity is, and what its acceleration is named; none of other columns.
+/// Place and component of a velocity; none of other columns.
 pub fn of_velocity(name: &str) -> Option<(&str, &str)> {
     let (place, component) = name.rsplit_once(".velocity.")?;
     matches!(component, "x" | "y" | "z").then_some((place, component))
