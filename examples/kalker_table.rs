@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let bytes = fs::read(part(&file, index))?;
         numbers.extend(bytes.chunks_exact(4).map(|one| f32::from_le_bytes([one[0], one[1], one[2], one[3]])));
     }
-    let bytes = packed(&numbers, GRID);
+    let bytes = packed(&numbers, GRID).ok_or("a number of the table is larger than 16")?;
     fs::write(&file, &bytes)?;
     for index in 0..=RATIOS {
         fs::remove_file(part(&file, index))?;

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use roulement::analysis::single_contact::{Law, RollingContact};
 use roulement::kalker::half_space::extrapolated;
 use roulement::kalker::linear::creep_matrix;
-use roulement::kalker::table::{CreepTable, axis_ratio, index, shipped};
+use roulement::kalker::packed::packed;
+use roulement::kalker::table::{CreepTable, GRID, RATIOS, axis_ratio, index, shipped};
 use roulement::kalker::table_nodes::NodeSolver;
 use roulement::kalker::{Patch, ScaledCreepage};
 use roulement::model::Conditions;
@@ -342,6 +343,14 @@ fn invariant_slopes_are_continuous_from_rest_to_sliding() {
             assert!(fine < 0.55 * coarse, "{ratio} {direction:?}: {coarse} {fine}");
         }
     }
+}
+
+#[test]
+fn consistency_the_table_packed_again_is_the_shipped_file() {
+    let numbers: Vec<f32> = (0..=RATIOS).flat_map(shipped).copied().collect();
+    assert_eq!(numbers.len(), GRID.iter().product::<usize>());
+    let file = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../src/kalker/table.bin")).unwrap();
+    assert!(packed(&numbers, GRID).is_some_and(|bytes| bytes == file));
 }
 
 #[test]
