@@ -1,6 +1,7 @@
 //! `effects.auto`: switches on the effects of a scene that matter by their estimates and have all the data they need.
 
 use super::estimate::{self, EstimateError, Verdicts};
+use super::level;
 use crate::effects::estimate::{Standing, Verdict};
 use crate::model::Model;
 use crate::scene::machine::MachineScene;
@@ -44,13 +45,14 @@ pub fn resolve_for_importer(mut scene: Scene) -> FoundOut<Scene> {
     Ok((scene, notes))
 }
 
-/// Effects found out of the bearings of a shaft that ask for it, by the settled states of the whole shaft; for an importer, who may set loads and
+/// Effects and levels found out of the bearings of a shaft that ask for it, by the settled states of the whole shaft; for an importer, who may set loads and
 /// speeds, within the ranges that it and its scripts give, and all that can be switched on where nothing gives these.
 ///
 /// # Errors
 /// If there is no equilibrium to estimate from.
 pub fn resolve_shaft(mut scene: SystemScene, for_importer: bool) -> FoundOut<SystemScene> {
     let asks = |mounted: &MountedScene| mounted.scene.effects.auto.on;
+    let known = !for_importer || !scene.ranges.is_empty() || scene.schedules().any(Schedule::is_scripted);
     let mut notes = vec![];
     if scene.bearings.iter().any(asks) {
         let mut written = scene.clone();
@@ -59,17 +61,19 @@ pub fn resolve_shaft(mut scene: SystemScene, for_importer: bool) -> FoundOut<Sys
             true => estimate::verdicts_of_shaft_in_ranges(&written),
             false => estimate::verdicts_of_shaft(&written),
         };
-        let known = !scene.ranges.is_empty() || scene.schedules().any(Schedule::is_scripted);
-        let unknown = for_importer && !known;
         let asking = scene.bearings.iter_mut().zip(all).filter(|(mounted, _)| asks(mounted));
         for (mounted, mut verdicts) in asking {
-            if unknown {
+            if !known {
                 take_all(&mut verdicts);
             }
             let own = settle(&mut mounted.scene, verdicts)?;
             notes.extend(own.into_iter().map(|note| format!("bearing {}: {note}", mounted.name)));
         }
         scene.renew_source();
+    }
+    if scene.bearings.iter().any(|mounted| mounted.finds_level) {
+        let (found, own) = level::resolve(scene, for_importer, known)?;
+        (scene, notes) = (found, [notes, own].concat());
     }
     Ok((scene, notes))
 }

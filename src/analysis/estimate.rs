@@ -54,7 +54,7 @@ const MOST_TIMES: usize = 24;
 /// Most ranges, those that a scene gives among them, up to which those of scripts are looked at: of a bearing alone, and of a shaft, whose states
 /// cost more.
 const MOST_RANGES: usize = 6;
-const MOST_OF_SHAFT: usize = 3;
+pub(super) const MOST_OF_SHAFT: usize = 3;
 /// Times in a period of what swings.
 const IN_A_PERIOD: u32 = 8;
 
@@ -209,7 +209,7 @@ pub fn on_shaft(bearing: &Simulation) -> Result<Estimate, EstimateError> {
 }
 
 /// A scene as it is judged: it starts in balance, and has a life.
-fn judged_scene(scene: &Scene) -> Scene {
+pub(super) fn judged_scene(scene: &Scene) -> Scene {
     let mut judged = scene.clone();
     judged.start = Start::default();
     judged.effects.auto.on = false;
@@ -290,7 +290,7 @@ fn times(scene: &Scene) -> Vec<f64> {
 
 /// \[s] times up to a last one at which schedules have a kink or an extreme value, growing: a selection that is even, with the least and
 /// the largest value of each, where there are very many.
-fn times_of<'a>(schedules: impl IntoIterator<Item = &'a Schedule>, duration: f64) -> Vec<f64> {
+pub(super) fn times_of<'a>(schedules: impl IntoIterator<Item = &'a Schedule>, duration: f64) -> Vec<f64> {
     let (mut times, mut extremes) = (vec![], vec![]);
     for schedule in schedules {
         let swings = schedule.shortest_period(duration).into_iter();

@@ -6,6 +6,7 @@ pub mod condensed;
 mod corners;
 pub mod estimate;
 mod kept_apart;
+mod level;
 mod looked_at;
 pub mod natural_frequency;
 mod settled;

@@ -174,7 +174,7 @@ impl Effect for Settings {
     const ESTIMATE: &'static str = "load of the blows of balls that nothing keeps apart, or the power of balls that a cage holds back; what rattles is not estimated, and taken to matter";
 
     fn matters(&self, estimate: &Estimate) -> Vec<Verdict> {
-        let Estimate { spacing, loads: [largest, _], power, .. } = *estimate;
+        let Estimate { spacing, loads: [largest, _], .. } = *estimate;
         let usual = USUAL_CLEARANCE * 2.0 * estimate.ball_radius;
         let clearance = self.section.as_ref().map_or(usual, |cage| cage.pocket_clearance.0);
         let lead = format!(
@@ -194,7 +194,7 @@ impl Effect for Settings {
         let blow = spacing.blow * speed.powf(1.2);
         let struck = blow / largest;
         // A cage holds them back to the common speed.
-        let held = if spacing.lead > clearance { spacing.slipping / power } else { 0.0 };
+        let held = estimate.held_back(clearance);
         // Elsewhere runs with a cage differ from those without one where no settled state tells of it.
         let quiet = !spacing.loose && spacing.lead < STILL * clearance && estimate.gyroscopic() < STEADY;
         let loose = !quiet && !spacing.from_rest;

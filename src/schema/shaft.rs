@@ -242,6 +242,18 @@ pub struct Point {
     pub position: Length,
 }
 
+/// Level of a bearing's model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BearingLevel {
+    /// Its motion in time, ball by ball.
+    Dynamic,
+    /// Elements in balance at every place of its rings, without states.
+    Equilibrium,
+    /// The one or the other, by whether something in it needs states.
+    Auto,
+}
+
 /// How a bearing is mounted.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

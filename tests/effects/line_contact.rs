@@ -56,7 +56,7 @@ fn closed_form_a_half_loaded_bearing_of_straight_rollers_has_the_life_of_iso_281
     for way in [5e-6, 20e-6, 50e-6] {
         let d = Vector6::ith(1, way);
         let force = -bearing.force(&d, &still).force[1];
-        let own = bearing.outputs(&d, &still, &[]).life * factor;
+        let own = bearing.outputs(&d, &still, &[], None).life * factor;
         // Powers of 4 and of 10/3 agree at C.
         let standard = (bearing.ratings().dynamic_load_rating / force).powi(4);
         println!("{force} N: {own} {standard} {}", own / standard);
@@ -71,7 +71,7 @@ fn invariant_static_safety_at_the_static_rating_and_lives_that_fall_with_load_an
     let mut before = f64::INFINITY;
     for way in [0.0, 1e-6, 5e-6, 20e-6, 45e-6] {
         let d = Vector6::ith(2, way);
-        let outputs = bearing.outputs(&d, &still, &[]);
+        let outputs = bearing.outputs(&d, &still, &[], None);
         assert!(outputs.life < before || way <= 1e-6, "{way}: {}", outputs.life);
         before = outputs.life;
     }
@@ -80,14 +80,14 @@ fn invariant_static_safety_at_the_static_rating_and_lives_that_fall_with_load_an
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         let d = Vector6::ith(2, middle);
-        if bearing.outputs(&d, &still, &[]).static_safety > 1.0 { low = middle } else { high = middle }
+        if bearing.outputs(&d, &still, &[], None).static_safety > 1.0 { low = middle } else { high = middle }
     }
     let force = -bearing.force(&Vector6::ith(2, low), &still).force[2];
     let over = force / bearing.ratings().static_load_rating;
     assert!((over / (5.0 / 4.08) - 1.0).abs() < 0.05, "{over}");
     let tilted = Vector6::new(0.0, 20e-6, 0.0, 0.0, 0.0, 2e-3);
-    let [even, uneven] =
-        [Vector6::ith(1, 20e-6), tilted].map(|d| half_loaded(Profile::Logarithmic).outputs(&d, &still, &[]));
+    let [even, uneven] = [Vector6::ith(1, 20e-6), tilted]
+        .map(|d| half_loaded(Profile::Logarithmic).outputs(&d, &still, &[], None));
     assert!(
         uneven.life < 0.9 * even.life && uneven.peak_pressure > even.peak_pressure,
         "{uneven:?} {even:?}"

@@ -47,14 +47,15 @@ fn published_radial_integrals_of_sjoevall_for_line_contact() {
         let bearing = Rollers::new(geometry, None);
         let d = Vector6::ith(1, way);
         let force = -bearing.force(&d, &STILL).force[1];
-        let largest = bearing.outputs(&d, &STILL, &[]).largest_load;
+        let largest = bearing.outputs(&d, &STILL, &[], None).largest_load;
         let own = force / (200.0 * largest);
         assert!((own / integral - 1.0).abs() < 5e-3, "{part}: {own} {integral}");
     }
     // The largest load without clearance is 4.08 F/Z.
     let bearing = Rollers::new(Geometry { count: 200, ..USUAL }, None);
     let d = Vector6::ith(2, 10e-6);
-    let factor = 200.0 * bearing.outputs(&d, &STILL, &[]).largest_load / -bearing.force(&d, &STILL).force[2];
+    let factor =
+        200.0 * bearing.outputs(&d, &STILL, &[], None).largest_load / -bearing.force(&d, &STILL).force[2];
     assert!((factor / 4.08 - 1.0).abs() < 2e-3, "{factor}");
 }
 
@@ -173,7 +174,7 @@ fn closed_form_a_tapered_roller_presses_its_rib_and_a_radial_load_induces_an_axi
         let d = Vector6::ith(0, direction * 30e-6);
         let force = bearing.force(&d, &STILL).force;
         let outer = force[0].abs() / 200.0 / contact_angle.sin();
-        let rib = bearing.outputs(&d, &STILL, &[]).largest_rib_load;
+        let rib = bearing.outputs(&d, &STILL, &[], None).largest_rib_load;
         assert!(
             force[0] * direction < -1e4
                 && (rib / (2.0 * outer * (0.5 * roller_angle).sin()) - 1.0).abs() < 1e-9,
@@ -188,8 +189,9 @@ fn closed_form_a_tapered_roller_presses_its_rib_and_a_radial_load_induces_an_axi
                 / 40000.0
         };
         let place = (-40..=40).map(|k| 1e-7 * f64::from(k)).min_by_key(|x| {
-            let loaded =
-                bearing.outputs(&Vector6::new(direction * x, 20e-6, 0.0, 0.0, 0.0, 0.0), &STILL, &[]).loaded;
+            let loaded = bearing
+                .outputs(&Vector6::new(direction * x, 20e-6, 0.0, 0.0, 0.0, 0.0), &STILL, &[], None)
+                .loaded;
             loaded.abs_diff(100)
         });
         let force =

@@ -14,6 +14,7 @@ mod hard;
 mod housing;
 mod hub;
 mod level;
+mod level_found;
 mod loads;
 mod mesh;
 mod motion;
@@ -22,6 +23,7 @@ mod planets;
 mod quasi_static;
 mod reference;
 mod rollers;
+mod rollers_between;
 mod seats;
 mod several;
 #[path = "../scene/reference/sources.rs"]

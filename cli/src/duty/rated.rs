@@ -103,7 +103,7 @@ pub(super) fn of_rollers(scene: &MachineScene, machine: &Machine, share: f64) ->
         let rollers = link.rollers()?;
         let rated = Rated {
             share,
-            speed: link.state.rate[3].abs(),
+            speed: link.speed()?,
             equivalent_load: rollers.equivalent_load,
             lives: [Some(rollers.life), None],
             safety: rollers.static_safety,

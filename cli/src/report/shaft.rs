@@ -119,7 +119,7 @@ fn spring(scene: &SystemScene, link: usize) -> Option<&SceneSpring> {
 
 /// Is a link a coupling?
 fn couples(scene: &SystemScene, link: usize) -> bool {
-    spring(scene, link).is_some_and(|spring| spring.second.is_some())
+    spring(scene, link).is_some_and(SceneSpring::is_coupling)
 }
 
 /// Is a link a bearing by rollers?

@@ -39,7 +39,7 @@ pub fn bearings(
         };
         let (shaft, other, position, kind) = match sides {
             [Some(shaft), other] if is_bearing => {
-                let kind = kind(model, of, shafts[shaft].way, other.is_some(), notes)?;
+                let kind = kind(model, of, shafts[shaft].way, notes)?;
                 (shaft, other, place("inner", shaft)?, kind)
             }
             [None, Some(shaft)] if is_bearing => {
@@ -166,16 +166,10 @@ fn is_coupling(of: &Component) -> bool {
 }
 
 /// What a bearing is: by the catalogue, by what the file says of it, or by its stiffness.
-fn kind(
-    model: &Model,
-    of: &Component,
-    way: f64,
-    between_shafts: bool,
-    notes: &mut Vec<String>,
-) -> Result<Kind, String> {
+fn kind(model: &Model, of: &Component, way: f64, notes: &mut Vec<String>) -> Result<Kind, String> {
     if of.kind == "concept_bearing" {
         let has_none = of.number("radial_stiffness")?.is_none_or(|number| number == 0.0);
-        let Some(named) = named_in(&of.name).filter(|_| has_none && !between_shafts) else {
+        let Some(named) = named_in(&of.name).filter(|_| has_none) else {
             return by_stiffness(of, way, "a bearing without a type", notes);
         };
         notes.push(format!(
@@ -186,7 +180,7 @@ fn kind(
     }
     let rows = of.number("number_of_bearing_rows")?.unwrap_or(1.0);
     let type_ = of.text("bearing_type").unwrap_or_default();
-    if let Some(name) = designation(of).filter(|_| !between_shafts && rows <= 1.0)
+    if let Some(name) = designation(of).filter(|_| rows <= 1.0)
         && let Some(Ok(_)) = rollers_of(name)
     {
         return Ok(Kind::Rollers(name.to_owned()));

@@ -314,7 +314,7 @@ fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut
             }
             (false, _) => Kind::Springs(springs(&of.stiffness, &of.name, notes)),
         };
-        match of.second {
+        match of.second.filter(|_| of.is_coupling()) {
             Some(second) => found.couplings.push(Coupling {
                 name: of.name.clone(),
                 shafts: [of.shaft, second],
@@ -325,6 +325,7 @@ fn bearings(scene: &SystemScene, table: &Table, found: &mut Gearbox, notes: &mut
             None => found.bearings.push(Bearing {
                 name: of.name.clone(),
                 shaft: of.shaft,
+                outer_shaft: of.second,
                 position: of.position,
                 kind,
                 held: true,

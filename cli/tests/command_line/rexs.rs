@@ -200,6 +200,21 @@ fn closed_form_tapered_bearings_of_a_file_hold_the_shaft_each_its_way() {
 }
 
 #[test]
+fn invariant_rollers_between_two_shafts_go_there_and_back() {
+    let scratch = Scratch::new("rexs-between");
+    let text = include_str!("../../../scenes/shafts/idler.toml");
+    std::fs::write(scratch.path("idler.toml"), text).unwrap();
+    let output = roulement(&["export", &scratch.path("idler.toml"), "-o", &scratch.path("idler.rexs")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (back, told) = imported(&scratch, "again.rexs", &std::fs::read(scratch.path("idler.rexs")).unwrap());
+    for name in ["K 30x35x27", "NUP 206"] {
+        assert!(back.contains(&format!("catalogue = \"{name}\"")), "{back}\n{told}");
+    }
+    assert_eq!(back.matches("outer_shaft = \"gear\"").count(), 2, "{back}");
+    assert_eq!(same_forces(&equilibrium(&scratch, text), &equilibrium(&scratch, &back)), 4);
+}
+
+#[test]
 fn refusals_name_component_attribute_and_value() {
     let scratch = Scratch::new("rexs-refused");
     let changed = |from: &str, to: &str| {

@@ -125,6 +125,11 @@ impl Estimate {
         if held > 0.0 { self.gyroscopic_moment.abs() / held } else { 0.0 }
     }
 
+    /// [-] power of a cage that holds balls back to the common speed, over all losses; 0 of one with pockets \[m] in which they do as they like.
+    pub fn held_back(&self, clearance: f64) -> f64 {
+        if self.spacing.lead > clearance { self.spacing.slipping / self.power } else { 0.0 }
+    }
+
     /// \[K] warming of the bearing by its losses, which go out through the seats of both rings, and to oil whose conductance is known.
     pub fn heating(&self) -> f64 {
         self.power / (self.outline.seats().iter().sum::<f64>() + self.oil_conductance)

@@ -1,7 +1,7 @@
 //! Formulas of ISO 281 (load rating), ISO 76 and ISO/TS 16281 (life from the load of every lamina) for radial roller bearings of one row.
 //!
 //! The standards were not at hand: formulas are quoted from memory of their clauses and of ISO/TR 1281-1, and compared with printed values where these are known
-//! (`tests/effects/line_contact.rs`). Lives are those of a load that stands still on the outer ring while the inner one turns.
+//! (`tests/effects/line_contact.rs`).
 
 use super::LONGEST;
 
@@ -12,7 +12,8 @@ const MATERIAL: f64 = 1.1;
 /// [-] reduction for edge loads and uneven ones that the ratings of ISO 281 have in them, and laminae have not.
 const UNEVEN: f64 = 0.83;
 /// [-] powers of the loads on a race that the load goes around, and on one that it stands still on.
-const EXPONENTS: [f64; 2] = [4.0, 4.5];
+const AROUND: f64 = 4.0;
+const STILL: f64 = 4.5;
 
 /// Ratings of a roller bearing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,22 +27,24 @@ pub struct Ratings {
     count: f64,
 }
 
-/// Sums over the rollers of powers of the loads of their laminae, on both races.
+/// Sums over the rollers of powers of the loads of their laminae, on the inner and the outer race.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Laminae([[f64; 2]; LAMINAE]);
-
-impl Default for Laminae {
-    fn default() -> Self {
-        Self([[0.0; 2]; LAMINAE])
-    }
+pub struct Laminae {
+    sums: [[f64; 2]; LAMINAE],
+    powers: [f64; 2],
 }
 
 impl Laminae {
+    /// No load yet, on races that a load goes around or stands still on.
+    pub fn new(around: [bool; 2]) -> Self {
+        Self { sums: [[0.0; 2]; LAMINAE], powers: around.map(|around| if around { AROUND } else { STILL }) }
+    }
+
     /// Adds the loads \[N] of a lamina of a roller on both races.
     pub fn add(&mut self, lamina: usize, loads: [f64; 2]) {
-        for (sum, (load, exponent)) in self.0[lamina].iter_mut().zip(loads.into_iter().zip(EXPONENTS)) {
+        for (sum, (load, power)) in self.sums[lamina].iter_mut().zip(loads.into_iter().zip(self.powers)) {
             if load > 0.0 {
-                *sum += load.powf(exponent);
+                *sum += load.powf(power);
             }
         }
     }
@@ -92,9 +95,9 @@ impl Ratings {
 
     /// [million revolutions] reference life under loads of laminae.
     pub fn life(&self, laminae: &Laminae) -> f64 {
-        let failing = laminae.0.iter().enumerate().map(|(lamina, sums)| {
+        let failing = laminae.sums.iter().enumerate().map(|(lamina, sums)| {
             let of = |race: usize| {
-                let load = (sums[race] / self.count).powf(1.0 / EXPONENTS[race]);
+                let load = (sums[race] / self.count).powf(1.0 / laminae.powers[race]);
                 (edge(lamina) * load / self.lamina_ratings[race]).powf(4.5)
             };
             of(0) + of(1)

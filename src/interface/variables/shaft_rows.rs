@@ -333,7 +333,7 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     for (index, name) in scene.link_names().enumerate() {
         let of = match index.checked_sub(scene.meshes.len()).map(|own| &scene.springs[own]) {
             None => link_rows::MESH,
-            Some(spring) if spring.second.is_some() => link_rows::COUPLING,
+            Some(spring) if spring.is_coupling() => link_rows::COUPLING,
             Some(spring) if spring.rollers.is_some() => link_rows::ROLLERS,
             Some(_) => link_rows::SPRING,
         };

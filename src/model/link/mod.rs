@@ -5,7 +5,7 @@
 //! f = f(d, d')           force and moment at the place on the first end, -f on the second
 //! ```
 //! Both act at one place, so that forces and moments of a link are in balance. What is stored is a potential of `d`, what is damped is
-//! never negative.
+//! never negative. Rollers between two shafts that turn have a turn of `d` that both have a share in: that of their cage.
 
 mod force;
 pub mod force_table;
@@ -41,6 +41,8 @@ pub struct LinkEnd {
     pub map: Map,
     /// Displacement and rotation by a turn that is given; zero where that is a coordinate.
     pub turn: Vector6<f64>,
+    /// [-] share of its turn about the axis that counts: 1, but of the outer ring of rollers, where that is on a shaft.
+    share: f64,
 }
 
 impl LinkEnd {
@@ -60,7 +62,15 @@ impl LinkEnd {
             }
             Turning::Still | Turning::Free => Vector6::zeros(),
         };
-        Self { structure: index, coordinates, map, turn }
+        Self { structure: index, coordinates, map, turn, share: 1.0 }
+    }
+
+    /// The outer ring of rollers, on a shaft: where its turn stands still in the middle, that of the inner ring does all of the cage's.
+    pub fn around(mut self, rollers: &Rollers) -> Self {
+        self.share = rollers.share_of_outer();
+        self.map.row_mut(3).scale_mut(self.share);
+        self.turn[3] *= self.share;
+        self
     }
 
     fn moved(&self, values: &DVector<f64>, turned: f64) -> Vector6<f64> {
@@ -98,7 +108,7 @@ pub struct Link {
 /// State of a link: its motion and force now, its energies since the start.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LinkState {
-    /// \[m, rad] displacement of the first end against the second.
+    /// \[m, rad] displacement of the first end against the second; of rollers on two shafts with the turn that [`Rollers::share_of_outer`] says.
     pub displacement: Vector6<f64>,
     /// [m/s, rad/s] its rate.
     pub rate: Vector6<f64>,
@@ -118,6 +128,8 @@ pub struct LinkState {
     pub unbalanced: f64,
     /// Its rollers as they were left.
     pub rollers: Vec<Left>,
+    /// [rad/s] speed of their outer ring, if that is on a shaft.
+    pub outer_speed: Option<f64>,
 }
 
 impl LinkState {
@@ -186,7 +198,7 @@ impl Link {
         h: f64,
         state: impl Fn(usize) -> &'a StructureState,
     ) -> LinkState {
-        let [displacement, rate] = self.motion(state);
+        let [displacement, rate] = self.motion(&state);
         let (on, rollers) = match &self.law {
             Law::Rollers(bearing) => bearing.leave(&displacement, &rate, &before.rollers),
             Law::Mesh(_) | Law::Spring(_) => (self.force(&displacement, &rate, before), vec![]),
@@ -194,6 +206,7 @@ impl Link {
         let LinkForce { force, stored, damped, unbalanced, .. } = on;
         let powers = [-force.dot(&rate), damped];
         let part = |k: usize| 0.5 * h * (before.powers[k] + powers[k]);
+        let outer = self.ends.get(1).filter(|end| end.share != 1.0);
         LinkState {
             displacement,
             rate,
@@ -205,6 +218,7 @@ impl Link {
             damped: before.damped + part(1),
             unbalanced,
             rollers,
+            outer_speed: outer.map(|end| end.motion(state(end.structure))[1][3] / end.share),
         }
     }
 

@@ -7,7 +7,8 @@
 //! f = J^T F,   J = dp/dd,   F on the inner race in the roller's plane
 //! ```
 //! `psi` turns with the shaft at the kinematic speed of the cage, so that `V` is a potential of `d` alone: what the shaft does against the rollers is
-//! stored, also as they pass. Its second derivatives are exact, those by the turn with them.
+//! stored, also as they pass. Its second derivatives are exact, those by the turn with them. Where the outer ring turns, too, the turn of `d` is what
+//! the inner one would need to turn the cage as far ([`Rollers::share_of_outer`]).
 
 use std::f64::consts::{PI, TAU};
 
@@ -226,6 +227,22 @@ impl Rollers {
         self.ratio
     }
 
+    /// [-] share of the turn of the outer ring, where that turns, in that of a displacement. The cage turns by `k theta_i + (1 - k) theta_o` with its
+    /// ratio `k`, which is `k (theta_i - share theta_o)`.
+    pub fn share_of_outer(&self) -> f64 {
+        1.0 - 1.0 / self.ratio
+    }
+
+    /// [rad/s] speed of the inner ring against the outer one, of a rate of a displacement.
+    pub fn relative_speed(&self, rate: &Vector6<f64>, outer: Option<f64>) -> f64 {
+        outer.map_or(rate[3], |outer| rate[3] + (self.share_of_outer() - 1.0) * outer)
+    }
+
+    /// Does the load go around the inner and the outer ring? It stands still in space, as does an outer ring that is on no shaft.
+    fn turning(&self, rate: &Vector6<f64>, outer: Option<f64>) -> [bool; 2] {
+        outer.map_or([true, false], |outer| [rate[3] + self.share_of_outer() * outer != 0.0, outer != 0.0])
+    }
+
     /// \[rad/s] at which rollers pass a place while the shaft turns at a rate [rad/s].
     pub fn passing(&self, rate: f64) -> f64 {
         self.geometry.count as f64 * self.ratio * rate
@@ -327,12 +344,19 @@ impl Rollers {
         on
     }
 
-    /// What it does there, with rollers sought from where they were left: loads, pressures and life by laminae.
-    pub fn outputs(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, left: &[Left]) -> RollerOutputs {
+    /// What it does there, with rollers sought from where they were left, and the speed [rad/s] of an outer ring on a shaft: loads, pressures and
+    /// life by laminae.
+    pub fn outputs(
+        &self,
+        displacement: &Vector6<f64>,
+        rate: &Vector6<f64>,
+        left: &[Left],
+        outer: Option<f64>,
+    ) -> RollerOutputs {
         let Geometry { diameter, length, profile, .. } = self.geometry;
         let stiffness = -self.force_near(displacement, rate, left).by_displacement;
         let mut of = RollerOutputs { static_safety: SAFEST, stiffness, ..RollerOutputs::default() };
-        let mut laminae = Laminae::default();
+        let mut laminae = Laminae::new(self.turning(rate, outer));
         let [centrifugal, _] = self.centrifugal(rate[3]);
         let stiffness = self.roller.lines[0].stiffness;
         // [1/m] curvatures of roller and race together.

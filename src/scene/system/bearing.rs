@@ -15,8 +15,8 @@ use crate::model::state::stack;
 use crate::scene::{Drive, Level, Scene, SceneError};
 use crate::schema::units::Acceleration;
 use crate::schema::{
-    AxialSeat, Components, HousingSection, Method, Mounting, MountingDirection, RollersSection, ShaftSection,
-    StiffnessSection, explain, reader, regular,
+    AxialSeat, BearingLevel, Components, HousingSection, Method, Mounting, MountingDirection, RollersSection,
+    ShaftSection, StiffnessSection, explain, reader, regular,
 };
 
 /// A bearing as it is written.
@@ -29,8 +29,8 @@ pub struct WrittenBearing {
     pub scene: Option<Value>,
     /// Its designation in the catalogue, such as 7206 B.
     pub catalogue: Option<String>,
-    /// Level of its model: its motion in time, or balls in balance at every place of its rings, without states; rollers always are.
-    pub level: Option<Level>,
+    /// Level of its model; of rollers `"equilibrium"` if not given.
+    pub level: Option<BearingLevel>,
     /// Its stiffness, in place of a scene: springs instead of balls.
     pub stiffness: Option<StiffnessSection>,
     /// Its cylindrical or tapered rollers, in place of a scene.
@@ -108,11 +108,12 @@ impl WrittenBearing {
     pub fn spring(self, shafts: &[ShaftSection], housings: &[HousingSection]) -> SceneSpring {
         let Self { name, stiffness, rollers, shaft, mounting, .. } = self;
         let (offset, tilt) = mounting.bore();
+        let named = |name: &Option<String>| shafts.iter().position(|own| name.as_ref() == Some(&own.name));
         SceneSpring {
             name,
-            shaft: shafts.iter().position(|own| shaft.as_ref() == Some(&own.name)).unwrap_or(0),
+            shaft: named(&shaft).unwrap_or(0),
             position: mounting.position.0,
-            second: None,
+            second: named(&mounting.outer_shaft),
             bore: mounting.bore(),
             housing: mounting.housing.and_then(|wanted| housings.iter().position(|own| own.name == wanted)),
             stiffness: stiffness.unwrap_or_default(),
@@ -127,7 +128,11 @@ impl WrittenBearing {
     /// With its name and what is wrong.
     pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
         let Self { name, scene, catalogue, level, shaft, mounting, set, .. } = self;
-        let level = level.unwrap_or_default();
+        let finds_level = level == Some(BearingLevel::Auto);
+        let level = match level {
+            Some(BearingLevel::Equilibrium) => Level::Equilibrium,
+            Some(BearingLevel::Dynamic | BearingLevel::Auto) | None => Level::Dynamic,
+        };
         // That there is such a shaft was checked.
         let named =
             |name: &Option<String>| given.shafts.iter().position(|(own, _)| name.as_ref() == Some(own));
@@ -188,16 +193,30 @@ impl WrittenBearing {
         if level == Level::Equilibrium {
             without_states(&scene).map_err(inside)?;
         }
-        Ok(MountedScene { name, shaft, outer_shaft, mounting, level, scene })
+        Ok(MountedScene { name, shaft, outer_shaft, mounting, level, finds_level, scene })
+    }
+}
+
+impl MountedScene {
+    /// Key of what needs states in it, if something does.
+    pub fn needs_states(&self) -> Option<&'static str> {
+        stateful(&self.scene)
     }
 }
 
 /// Refuses what needs states in a bearing that has none.
 fn without_states(scene: &Scene) -> Result<(), SceneError> {
+    let why = "is for a bearing with states: one of level = \"equilibrium\" has balls in balance wherever its rings are; take it out, or give \
+               level = \"dynamic\"";
+    stateful(scene).map_or(Ok(()), |key| Err(SceneError::conflict(key, why)))
+}
+
+/// Key of what needs states in a scene, if something does.
+fn stateful(scene: &Scene) -> Option<&'static str> {
     let effects = &scene.effects;
     let waves = [true, false].into_iter().any(|inner| effects.form.of(inner).is_some());
     let damaged = [On::Inner, On::Outer].into_iter().any(|on| !effects.defects.on(on, 0.0).is_empty());
-    let refused = [
+    let needing = [
         (scene.outer.drive == Drive::Wrench, "outer.drive = \"wrench\""),
         (effects.support.sections.iter().any(Option::is_some), "outer.support"),
         (waves || !effects.form.larger_radii().is_empty(), "form"),
@@ -208,9 +227,7 @@ fn without_states(scene: &Scene) -> Result<(), SceneError> {
         (effects.means.on, "effects.mean_outputs"),
         (scene.solver.method != Method::Hht, "solver.method"),
     ];
-    let why = "is for a bearing with states: one of level = \"equilibrium\" has balls in balance wherever its rings are; take it out, or give \
-               level = \"dynamic\"";
-    refused.into_iter().find(|(is, _)| *is).map_or(Ok(()), |(_, key)| Err(SceneError::conflict(key, why)))
+    needing.into_iter().find(|(is, _)| *is).map(|(_, key)| key)
 }
 
 /// Drive of the outer race, where a table gives it.

@@ -211,12 +211,16 @@ fn linked(bearing: &WrittenBearing) -> Result<(), SceneError> {
         ("bearing.scene", bearing.scene.is_some()),
         ("bearing.catalogue", bearing.catalogue.is_some()),
         ("bearing.set", !bearing.set.is_empty()),
-        ("bearing.mounting", mounting.outer_shaft.is_some() || mounting.axial == AxialSeat::Free || preload),
+        ("bearing.mounting", mounting.axial == AxialSeat::Free || preload),
     ];
     if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
         let why = "is for a bearing of balls that are simulated; of one by its stiffness or by rollers mounting has position, direction, housing, offset and \
-                   misalignment alone";
+                   misalignment alone, and outer_shaft of one by rollers";
         return Err(inside(SceneError::conflict(key, why)));
+    }
+    if mounting.outer_shaft.is_some() && bearing.stiffness.is_some() {
+        let why = "is for balls and rollers: springs between two shafts are a [[coupling]]";
+        return Err(inside(SceneError::conflict("bearing.mounting.outer_shaft", why)));
     }
     let checked = match (&bearing.stiffness, &bearing.rollers) {
         (Some(_), Some(_)) => {

@@ -85,6 +85,8 @@ pub struct MountedScene {
     pub mounting: Mounting,
     /// Has it states in the steps of the machine, or are its balls in balance at every place of its rings?
     pub level: Level,
+    /// Is that found out by what acts, before a run? With states until then.
+    pub finds_level: bool,
     /// The bearing by itself, in axes of its own; its inner race is moved by the shaft.
     pub scene: Scene,
 }

@@ -5,7 +5,7 @@ use nalgebra::Vector6;
 use crate::model::link::roller::Profile;
 use crate::model::link::rollers::{Geometry, Rollers, Taper};
 use crate::schema::numbers::Range;
-use crate::schema::{AxialTaken, Level, RollerProfile, RollersSection, SceneError};
+use crate::schema::{AxialTaken, BearingLevel, RollerProfile, RollersSection, SceneError};
 
 const COUNT: Range = Range::closed(3.0, 1000.0, "");
 const SIZE: Range = Range::closed(1e-4, 1.0, "m");
@@ -21,8 +21,8 @@ const DAMPING: Range = Range::closed(0.0, 1e15, "N s/m or N m s/rad");
 ///
 /// # Errors
 /// Names the key, the value and the range.
-pub fn check(of: &RollersSection, level: Option<Level>) -> Result<(), SceneError> {
-    if level == Some(Level::Dynamic) {
+pub fn check(of: &RollersSection, level: Option<BearingLevel>) -> Result<(), SceneError> {
+    if level == Some(BearingLevel::Dynamic) {
         let why = "rollers are simulated at level = \"equilibrium\"";
         return Err(SceneError::conflict("bearing.level = \"dynamic\"", why));
     }

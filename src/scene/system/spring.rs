@@ -27,7 +27,7 @@ pub struct SceneSpring {
     pub position: f64,
     /// Index of the housing that it sits in; none in the ground.
     pub housing: Option<usize>,
-    /// Index of the second shaft of a coupling.
+    /// Index of the second shaft of a coupling, or of the shaft that the outer ring of rollers is a part of.
     pub second: Option<usize>,
     /// \[m, rad] how far its bore lies beside the axis of the shaft, and the tilt of that.
     pub bore: (Vector3<f64>, Vector3<f64>),
@@ -47,6 +47,11 @@ impl SceneSpring {
             }
             _ => None,
         }
+    }
+
+    /// Is it a coupling?
+    pub fn is_coupling(&self) -> bool {
+        self.second.is_some() && self.rollers.is_none()
     }
 
     /// Does it hold the shaft along the axis?

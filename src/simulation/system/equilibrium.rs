@@ -90,7 +90,7 @@ impl MachineEquilibrium {
         });
         let bearings = bearings.collect::<Result<_, SystemError>>()?;
         let shafts = scene.shafts.iter().map(|shaft| shaft.name.clone()).collect();
-        let by_stiffness = scene.springs.iter().filter(|spring| spring.second.is_none()).count();
+        let by_stiffness = scene.springs.iter().filter(|spring| !spring.is_coupling()).count();
         let links = (scene.link_names().map(String::from).collect(), [scene.meshes.len(), by_stiffness]);
         Ok(Self {
             title: scene.title.clone(),

@@ -82,7 +82,11 @@ pub fn of(scene: &SystemScene, carriers: &[Carrier]) -> Vec<Link> {
                 &Vector3::zeros(),
             ));
         }
-        ends.extend(spring.second.map(|second| end(second, &Vector3::zeros())));
+        let second = spring.second.map(|second| end(second, &Vector3::zeros()));
+        ends.extend(second.map(|end| match &spring.rollers {
+            Some(rollers) => end.around(rollers),
+            None => end,
+        }));
         if let Some(rollers) = &spring.rollers {
             links.push(Link { ends, law: Law::Rollers(rollers.clone()) });
             continue;

@@ -115,15 +115,21 @@ impl LinkOutputs {
     pub fn rollers(&self) -> Option<&RollerOutputs> {
         let Unseen { links, index, found } = self.rollers.as_ref()?;
         let Law::Rollers(bearing) = &links[*index].law else { return None };
-        let LinkState { displacement, rate, rollers, .. } = &self.state;
-        Some(found.get_or_init(|| bearing.outputs(displacement, rate, rollers)))
+        let LinkState { displacement, rate, rollers, outer_speed, .. } = &self.state;
+        Some(found.get_or_init(|| bearing.outputs(displacement, rate, rollers, *outer_speed)))
+    }
+
+    /// [rad/s] speed of the rings of rollers against each other; none of other links.
+    pub fn speed(&self) -> Option<f64> {
+        let Unseen { links, index, .. } = self.rollers.as_ref()?;
+        let Law::Rollers(bearing) = &links[*index].law else { return None };
+        Some(bearing.relative_speed(&self.state.rate, self.state.outer_speed).abs())
     }
 
     /// \[h] reference life of rollers at the present speed; none of others, or at rest.
     pub fn hours(&self) -> Option<f64> {
-        let speed = self.state.rate[3].abs();
-        let life = self.rollers().filter(|_| speed > 0.0)?.life;
-        Some(life * 1e6 * TAU / speed / 3600.0)
+        let speed = self.speed().filter(|speed| *speed > 0.0)?;
+        Some(self.rollers()?.life * 1e6 * TAU / speed / 3600.0)
     }
 }
 

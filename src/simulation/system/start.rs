@@ -112,9 +112,9 @@ impl System {
     }
 }
 
-/// A scene with the effects found out of those bearings that ask for it.
+/// A scene with effects and levels found out of those bearings that ask for it.
 pub(super) fn found_out(scene: &SystemScene) -> Result<Cow<'_, SystemScene>, SystemError> {
-    if scene.bearings.iter().any(|mounted| mounted.scene.effects.auto.on) {
+    if scene.bearings.iter().any(|mounted| mounted.finds_level || mounted.scene.effects.auto.on) {
         let resolved = auto::resolve_shaft(scene.clone(), false);
         let (scene, _) = resolved.map_err(|why| SystemError::Together(SimulationError::Auto(why)))?;
         return Ok(Cow::Owned(scene));

@@ -26,7 +26,7 @@ const TYPICAL_STIFFNESS: f64 = 1e7;
 const TOLERANCE: f64 = 1e-10;
 const ROUNDED: f64 = 1e-6;
 /// [-] imbalance below which a step must lower it.
-const NEAR: f64 = 1e-4;
+const NEAR: f64 = 1e-7;
 /// [-] longest step over the smallest ball diameter.
 const LONGEST_STEP: f64 = 0.01;
 /// [-] part of a preload below which it is gone.
