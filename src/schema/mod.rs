@@ -37,7 +37,7 @@ pub use matrices::{Matrices, StructureMatrices};
 pub use mesh::*;
 pub use phase::{PhaseSection, check_phases};
 pub use race::Race;
-pub use rollers::{RollerProfile, RollersSection};
+pub use rollers::{RollerAmbient, RollerFilm, RollerProfile, RollersSection};
 pub use schedule::{Schedule, Sine};
 pub use sections::*;
 pub use shaft::*;

@@ -22,6 +22,7 @@ mod outer_wrench;
 mod planets;
 mod quasi_static;
 mod reference;
+mod roller_friction;
 mod rollers;
 mod rollers_between;
 mod seats;
@@ -30,6 +31,9 @@ mod several;
 #[allow(dead_code)]
 mod sources;
 mod statics;
+#[path = "../common/tables.rs"]
+#[allow(dead_code)]
+mod tables;
 mod teeth;
 mod three_stage;
 mod torsion;

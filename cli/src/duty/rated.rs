@@ -23,7 +23,7 @@ pub struct Rated {
     pub safety: f64,
     /// [-] power of the load that a life goes by: 3 of balls, 10/3 of rollers (ISO 281).
     pub exponent: f64,
-    /// [N m] friction torque, its mean; none of rollers, whose friction is not simulated.
+    /// [N m] friction torque, its mean; none of rollers without friction.
     pub torque: Option<f64>,
     /// \[W] all losses, their mean; likewise.
     pub loss: Option<f64>,
@@ -108,8 +108,8 @@ pub(super) fn of_rollers(scene: &MachineScene, machine: &Machine, share: f64) ->
             lives: [Some(rollers.life), None],
             safety: rollers.static_safety,
             exponent: 10.0 / 3.0,
-            torque: None,
-            loss: None,
+            torque: rollers.friction.map(|friction| friction.torque()),
+            loss: rollers.friction.map(|friction| friction.loss),
         };
         Some((name.to_owned(), rated))
     };

@@ -84,7 +84,7 @@ impl DutyRating {
     /// What its reader should know: which load takes most, and what is left out.
     pub fn notes(&self) -> Vec<String> {
         let without = self.without_losses().then(|| {
-            "note: rollers have no friction here: their torques and losses are empty, and those of the machine are without them".to_owned()
+            "note: some rollers have no friction here: their torques and losses are empty, and those of the machine are without them; bearing.rollers.film gives them oil".to_owned()
         });
         let worst = self.together.iter().filter_map(|(name, _)| {
             let worst = self.worst(name)?;

@@ -72,6 +72,9 @@ pub fn columns(scene: &SystemScene) -> Vec<(String, &'static str)> {
                 let mut others = vec![("moment.y", "N m"), ("moment.z", "N m")];
                 if rolls(scene, index) {
                     others.extend([("largest_load", "N"), ("peak_pressure", "Pa"), ("loaded_rollers", "")]);
+                    if spring(scene, index).is_some_and(SceneSpring::rubs) {
+                        others.extend([("friction_torque", "N m"), ("loss.total", "W"), ("film.ratio", "")]);
+                    }
                 }
                 others
             }
@@ -131,8 +134,12 @@ fn rolls(scene: &SystemScene, link: usize) -> bool {
 pub fn unknown_to_rollers(scene: &SystemScene) -> impl Iterator<Item = String> + '_ {
     let of = scene.springs.iter().filter(|spring| spring.rollers.is_some());
     of.map(|spring| {
+        let losses = match spring.rubs() {
+            true => "slip and its losses, friction of the cage, churning of a sump",
+            false => "friction and losses (rollers.film gives them oil), slip",
+        };
         format!(
-            "bearing {}: rollers in balance wherever the rings are (level \"equilibrium\"); not simulated: friction and losses, slip, skew, a cage that moves by \
+            "bearing {}: rollers in balance wherever the rings are (level \"equilibrium\"); not simulated: {losses}, skew, a cage that moves by \
              itself, the weight of rollers, growth by heat and fits, waves and spalls",
             spring.name
         )
@@ -164,6 +171,8 @@ pub fn row(scene: &SystemScene, outputs: &SystemOutputs) -> Vec<f64> {
                 row.extend(force.fixed_rows::<2>(4).iter());
                 if let Some(rollers) = link.rollers() {
                     row.extend([rollers.largest_load, rollers.peak_pressure, rollers.loaded as f64]);
+                    let friction = rollers.friction.iter();
+                    row.extend(friction.flat_map(|of| [of.torque(), of.loss, of.film_ratio]));
                 }
             }
         }
@@ -331,9 +340,12 @@ pub fn write_summary<'a>(
         if let Some(rollers) = link.rollers() {
             let force = &link.state.force;
             let hours = link.hours().map_or(String::new(), |hours| format!(", L10r {hours:.0} h"));
+            let friction = rollers.friction.map_or("no friction".to_owned(), |of| {
+                format!("friction torque {:.5} N m, {:.3} W", of.torque(), of.loss)
+            });
             writeln!(
                 out,
-                "{name:<16} the shaft presses with {:.1} N across, {:.1} N along x; {} rollers loaded, up to {:.1} N, {:.0} MPa{hours}; no friction",
+                "{name:<16} the shaft presses with {:.1} N across, {:.1} N along x; {} rollers loaded, up to {:.1} N, {:.0} MPa{hours}; {friction}",
                 force[1].hypot(force[2]),
                 -force[0],
                 rollers.loaded,

@@ -1,5 +1,6 @@
 //! The rows of meshes, of bearings by their stiffness or by rollers, and of couplings.
 
+use crate::model::link::roller_friction::FrictionOutputs;
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::LinkOutputs;
 
@@ -135,6 +136,37 @@ const OF_ROLLERS: &[LinkRow] = &[
     ),
 ];
 
+/// [N m, N m, N m, W, m, -] friction of rollers; none of others.
+fn friction(link: &LinkOutputs) -> FrictionOutputs {
+    link.rollers().and_then(|rollers| rollers.friction).unwrap_or_default()
+}
+
+/// Those of a bearing by rollers that has friction.
+const OF_FRICTION: &[LinkRow] = &[
+    row(
+        "friction_torque",
+        MOMENT,
+        "moment of friction that holds the rings back against each other, of",
+        |link| friction(link).torque(),
+    ),
+    row("loss.total", POWER, "all power lost to friction of", |link| friction(link).loss),
+    row("loss.rolling", POWER, "power lost to rolling resistance of the oil in", |link| {
+        friction(link).loss_of(0)
+    }),
+    row("loss.ribs", POWER, "power lost to sliding of roller ends on ribs of", |link| {
+        friction(link).loss_of(1)
+    }),
+    row("loss.drag", POWER, "power that rollers lose to what is around them in", |link| {
+        friction(link).loss_of(2)
+    }),
+    row("film.thickness", (units::METRE, 1e-6), "least central film of a loaded line of", |link| {
+        friction(link).film
+    }),
+    row("film.ratio", (units::ONE, 1.0), "least film of a loaded line over the roughness, of", |link| {
+        friction(link).film_ratio
+    }),
+];
+
 /// Those of a coupling alone.
 const OF_COUPLING: &[LinkRow] = &[
     row("force.x", FORCE, "force on the first shaft, x component, axes of the shaft, of", |link| {
@@ -166,5 +198,7 @@ pub const MESH: &[&[LinkRow]] = &[OF_MESH, ENERGIES];
 pub const SPRING: &[&[LinkRow]] = &[OF_SPRING, ENERGIES];
 /// Rows of a bearing by rollers.
 pub const ROLLERS: &[&[LinkRow]] = &[OF_SPRING, OF_ROLLERS, ENERGIES];
+/// Rows of one with friction.
+pub const RUBBING: &[&[LinkRow]] = &[OF_SPRING, OF_ROLLERS, OF_FRICTION, ENERGIES];
 /// Rows of a coupling.
 pub const COUPLING: &[&[LinkRow]] = &[OF_COUPLING, ENERGIES];

@@ -334,6 +334,7 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
         let of = match index.checked_sub(scene.meshes.len()).map(|own| &scene.springs[own]) {
             None => link_rows::MESH,
             Some(spring) if spring.is_coupling() => link_rows::COUPLING,
+            Some(spring) if spring.rubs() => link_rows::RUBBING,
             Some(spring) if spring.rollers.is_some() => link_rows::ROLLERS,
             Some(_) => link_rows::SPRING,
         };

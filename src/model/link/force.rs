@@ -17,6 +17,8 @@ pub struct LinkForce {
     pub damped: f64,
     /// [-] force that is left on a body inside of the link, one without states, over what may be left: 1 at most in balance, 0 without such bodies.
     pub unbalanced: f64,
+    /// [N m] part of the moment about the axis that is friction of rollers.
+    pub friction: f64,
 }
 
 impl LinkForce {
@@ -29,6 +31,7 @@ impl LinkForce {
             stored: 0.0,
             damped: 0.0,
             unbalanced: 0.0,
+            friction: 0.0,
         }
     }
 

@@ -13,6 +13,8 @@ pub mod gear_pair;
 mod line;
 pub mod one_sided;
 pub mod roller;
+pub mod roller_friction;
+mod roller_oil;
 pub mod rollers;
 pub mod spring_bearing;
 pub mod tooth_mesh;

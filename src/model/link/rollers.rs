@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::LinkForce;
 use super::roller::{Line, Profile, Rib, Roller, Settled};
+use super::roller_friction::{Friction, FrictionOutputs};
 use crate::effects::rating::line_contact::{LAMINAE, Laminae, Ratings, place_of};
 use crate::model::balance::may_be_left;
 use crate::numerics::elementary::pow;
@@ -32,7 +33,7 @@ const STATIC_PRESSURE: f64 = 4e9;
 const SAFEST: f64 = 1e6;
 /// [-] place of the contact of a roller's end with a rib from the roller's axis, over the diameter, and radius of a punch that is as stiff,
 /// over the diameter: estimates.
-const RIB_PLACE: f64 = 0.45;
+pub(super) const RIB_PLACE: f64 = 0.45;
 const RIB_RADIUS: f64 = 0.05;
 
 /// What a roller bearing of one row is made of.
@@ -75,7 +76,7 @@ pub struct Taper {
 
 impl Geometry {
     /// [-] diameter of the rollers over that of the circle of their centres, with the cosine of the contact angle.
-    fn gamma(&self) -> f64 {
+    pub(super) fn gamma(&self) -> f64 {
         self.diameter * self.cosine() / self.pitch_diameter
     }
 
@@ -130,6 +131,8 @@ pub struct Rollers {
     ratings: Ratings,
     /// [N s/m, N s/m, N m s/rad] damping across the axis, along it, and of a tilt.
     pub damping: [f64; 3],
+    /// Friction; none where nothing is said of it.
+    pub friction: Option<Friction>,
     /// \[m, rad] where the shaft is while it is in the middle.
     pub rest: Vector6<f64>,
 }
@@ -153,6 +156,8 @@ pub struct RollerOutputs {
     pub static_safety: f64,
     /// Stiffness [N/m, N, N m]: force and moment against displacement and rotation of the shaft, in its axes.
     pub stiffness: Matrix6<f64>,
+    /// Friction and films; none where nothing is said of them.
+    pub friction: Option<FrictionOutputs>,
 }
 
 /// A roller as it was left: where it is looked for next.
@@ -202,6 +207,7 @@ impl Rollers {
                 dynamic_load_rating,
             ),
             damping: [0.0; 3],
+            friction: None,
             rest: Vector6::zeros(),
             geometry,
         }
@@ -248,6 +254,11 @@ impl Rollers {
         self.geometry.count as f64 * self.ratio * rate
     }
 
+    /// [rad/s] speed of the rings against each other, with which contacts roll and slide.
+    fn speed_of_rings(&self, rate: &Vector6<f64>) -> f64 {
+        rate[3]
+    }
+
     /// \[N] centrifugal force of a roller while the shaft turns at a rate [rad/s], and its derivative by that.
     fn centrifugal(&self, rate: f64) -> [f64; 2] {
         let over_rate = self.mass * 0.5 * self.geometry.pitch_diameter * self.ratio * self.ratio;
@@ -276,7 +287,7 @@ impl Rollers {
 
     /// The same, with rollers sought from where they were left.
     pub fn force_near(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, left: &[Left]) -> LinkForce {
-        self.sum((displacement, rate), left, &mut |_| {})
+        self.sum((displacement, rate), left, self.friction.as_ref(), &mut |_| {})
     }
 
     /// The same, and where rollers are then.
@@ -287,21 +298,23 @@ impl Rollers {
         left: &[Left],
     ) -> (LinkForce, Vec<Left>) {
         let mut now = Vec::with_capacity(self.geometry.count);
-        let on = self.sum((displacement, rate), left, &mut |roller| now.push(roller));
+        let on = self.sum((displacement, rate), left, self.friction.as_ref(), &mut |roller| now.push(roller));
         (on, now)
     }
 
-    /// Force and moment of all rollers on the shaft, and what dampers add; `see` is told of where each roller is.
+    /// Force and moment of all rollers on the shaft, and what friction and dampers add; `see` is told of where each roller is.
     fn sum(
         &self,
         (displacement, rate): (&Vector6<f64>, &Vector6<f64>),
         left: &[Left],
+        friction: Option<&Friction>,
         see: &mut dyn FnMut(Left),
     ) -> LinkForce {
         let d = displacement - self.rest;
         let orbit = 0.5 * self.geometry.pitch_diameter;
         let [centrifugal, by_rate] = self.centrifugal(rate[3]);
         let mut on = LinkForce::none();
+        let mut turning = friction.map(|friction| friction.at(self.speed_of_rings(rate)));
         for Seen { cosine: c, sine: s, moved, settled } in self.each(&d, centrifugal, left) {
             see(Left { place: settled.place, race: moved });
             // Motion of a race in the plane by the displacement, and the same by the azimuth.
@@ -330,6 +343,11 @@ impl Rollers {
             on.by_displacement += tangent;
             let mut column = on.by_rate.column_mut(3);
             column += by_ring.tr_mul(&settled.by_centrifugal) * by_rate;
+            if let Some(turning) = &mut turning {
+                let (by_force, by_thrown) = turning.add(force, centrifugal);
+                let by_rate = (by_force.dot(&settled.by_centrifugal) + by_thrown) * by_rate;
+                turning.follow(&-by_ring.tr_mul(&settled.stiffness.tr_mul(&by_force)), by_rate);
+            }
             on.stored += settled.stored;
             on.unbalanced = larger(
                 on.unbalanced,
@@ -341,6 +359,9 @@ impl Rollers {
         on.force -= damping.component_mul(rate);
         on.by_rate -= Matrix6::from_diagonal(&damping);
         on.damped = damping.dot(&rate.component_mul(rate));
+        if let Some(turning) = turning {
+            turning.put(&mut on);
+        }
         on
     }
 
@@ -354,10 +375,12 @@ impl Rollers {
         outer: Option<f64>,
     ) -> RollerOutputs {
         let Geometry { diameter, length, profile, .. } = self.geometry;
-        let stiffness = -self.force_near(displacement, rate, left).by_displacement;
+        let stiffness = -self.sum((displacement, rate), left, None, &mut |_| {}).by_displacement;
         let mut of = RollerOutputs { static_safety: SAFEST, stiffness, ..RollerOutputs::default() };
         let mut laminae = Laminae::new(self.turning(rate, outer));
         let [centrifugal, _] = self.centrifugal(rate[3]);
+        let mut turning = self.friction.as_ref().map(|friction| friction.at(self.speed_of_rings(rate)));
+        let mut pressed = vec![];
         let stiffness = self.roller.lines[0].stiffness;
         // [1/m] curvatures of roller and race together.
         let curvatures =
@@ -367,6 +390,10 @@ impl Rollers {
             of.largest_load = of.largest_load.max(load);
             of.largest_rib_load = of.largest_rib_load.max(settled.rib);
             of.loaded += usize::from(load > 0.0);
+            if let Some(turning) = &mut turning {
+                turning.add(&settled.force, centrifugal);
+                pressed.push(settled.loads);
+            }
             for lamina in 0..LAMINAE {
                 let place = place_of(lamina, length);
                 let drop = profile.drop(place, diameter, length);
@@ -379,6 +406,10 @@ impl Rollers {
                 }
             }
         }
+        of.friction = turning.map(|turning| {
+            let [film, film_ratio] = turning.least_films(&pressed).unwrap_or_default();
+            FrictionOutputs { film, film_ratio, ..turning.outputs() }
+        });
         of.life = self.ratings.life(&laminae);
         of.equivalent_load = self.ratings.equivalent_load(of.life);
         if of.peak_pressure > 0.0 {

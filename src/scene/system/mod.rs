@@ -12,6 +12,7 @@ pub mod mesh;
 mod numbers;
 mod planets;
 mod ranges;
+mod roller_film;
 mod rollers;
 mod source;
 pub mod spring;

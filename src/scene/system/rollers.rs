@@ -2,6 +2,7 @@
 
 use nalgebra::Vector6;
 
+use super::roller_film;
 use crate::model::link::roller::Profile;
 use crate::model::link::rollers::{Geometry, Rollers, Taper};
 use crate::schema::numbers::Range;
@@ -68,7 +69,7 @@ pub fn check(of: &RollersSection, level: Option<BearingLevel>) -> Result<(), Sce
         let why = "says which forces along the axis ribs take: give it, or take axial_clearance and rib_stiffness out";
         return Err(SceneError::conflict(key("axial_way"), why));
     }
-    Ok(())
+    roller_film::check(of)
 }
 
 /// The bearing, whose x axis points along that of the shaft (1) or against it (-1), with the bore of its outer ring at `rest`.
@@ -107,6 +108,7 @@ pub fn bearing(of: &RollersSection, direction: f64, mut rest: Vector6<f64>) -> R
         of.axial_damping.map_or(0.0, |c| c.0),
         of.tilt_damping.map_or(0.0, |c| c.0),
     ];
+    bearing.friction = roller_film::friction(of, &geometry);
     bearing.rest = rest;
     bearing
 }

@@ -60,6 +60,11 @@ impl SceneSpring {
         by_stiffness || self.rollers.as_ref().is_some_and(Rollers::has_ribs)
     }
 
+    /// Is it a bearing by rollers with friction?
+    pub fn rubs(&self) -> bool {
+        self.rollers.as_ref().is_some_and(|rollers| rollers.friction.is_some())
+    }
+
     /// Does it hold the turns of two shafts against each other?
     pub fn couples(&self) -> Option<[usize; 2]> {
         self.stiffness.torsion.as_ref().and(self.second).map(|second| [self.shaft, second])

@@ -14,6 +14,7 @@ use crate::analysis::condensed::Condensed;
 use crate::effects::rating::life_of_all;
 use crate::effects::reports::LifeOutput;
 use crate::model::bodies::Race;
+use crate::model::link::roller_friction::FrictionOutputs;
 use crate::model::link::rollers::RollerOutputs;
 use crate::scene::system::SystemScene;
 use crate::simulation::outputs::Outputs;
@@ -146,7 +147,8 @@ impl MachineEquilibrium {
                     [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
                 let value = match link.rollers() {
                     None => json!({ "force": force, "moment": moment }),
-                    Some(rollers) => json!({
+                    Some(rollers) => {
+                        let mut value = json!({
                         "force": force,
                         "moment": moment,
                         "stiffness": rollers.stiffness.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
@@ -158,7 +160,12 @@ impl MachineEquilibrium {
                         "L10r_hours": link.hours(),
                         "equivalent_load": rollers.equivalent_load,
                         "static_safety": rollers.static_safety,
-                    }),
+                        });
+                        if let Some(friction) = &rollers.friction {
+                            value["friction"] = friction_json(friction);
+                        }
+                        value
+                    }
                 };
                 (name.clone(), value)
             });
@@ -200,6 +207,19 @@ impl MachineEquilibrium {
             }).collect::<Vec<_>>(),
         })
     }
+}
+
+fn friction_json(of: &FrictionOutputs) -> Value {
+    let [rolling, ribs, drag] = of.parts;
+    json!({
+        "torque": of.torque(),
+        "of_rolling": rolling,
+        "of_ribs": ribs,
+        "of_drag": drag,
+        "loss": of.loss,
+        "film_thickness": of.film,
+        "film_ratio": of.film_ratio,
+    })
 }
 
 fn life_json(life: &LifeOutput, hours: Option<[Option<f64>; 2]>) -> Value {
@@ -299,6 +319,20 @@ fn write_rollers(f: &mut fmt::Formatter<'_>, of: &RollerOutputs, hours: Option<f
         of.largest_load,
         of.peak_pressure * 1e-6
     )?;
+    if let Some(friction) = &of.friction {
+        let [rolling, ribs, drag] = friction.parts;
+        let film = match friction.film_ratio {
+            0.0 => String::new(),
+            ratio => format!(", film {:.3} um, {ratio:.2} of the roughness", friction.film * 1e6),
+        };
+        writeln!(
+            f,
+            "{:<16} friction torque {:.5} N m (rolling {rolling:.5}, ribs {ribs:.5}, drag {drag:.5}), {:.3} W{film}",
+            "",
+            friction.torque(),
+            friction.loss
+        )?;
+    }
     let hours = hours.map_or(String::new(), |hours| format!(" ({hours:.4e} h)"));
     writeln!(
         f,
@@ -360,10 +394,10 @@ impl MachineEquilibrium {
                     link.state.displacement[3] * 1e3
                 )?,
                 false => {
-                    let how = if link.rollers().is_some() {
-                        "rollers without friction"
-                    } else {
-                        "by its stiffness"
+                    let how = match link.rollers().map(|rollers| rollers.friction) {
+                        Some(Some(_)) => "rollers",
+                        Some(None) => "rollers without friction",
+                        None => "by its stiffness",
                     };
                     writeln!(
                         f,

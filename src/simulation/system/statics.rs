@@ -359,10 +359,19 @@ impl Statics<'_> {
             if !found.is_balanced() {
                 return Err(SystemError::Together(rollers_out_of_balance(self.scene, index, self.time)));
             }
-            let LinkForce { force: on, by_displacement, .. } = found;
+            let LinkForce { force: on, by_displacement, friction, .. } = found;
             force = force.max(on.fixed_rows::<3>(0).amax());
             let relative = of_link(link, &first);
             residual += relative.tr_mul(&on);
+            // A housing feels the friction of rollers too; a shaft is turned against it.
+            let housings = self.scene.shafts.len()..;
+            if let Some(end) =
+                link.ends.get(1).filter(|end| friction != 0.0 && housings.contains(&end.structure))
+            {
+                for (k, column) in end.coordinates.iter().zip(end.map.column_iter()) {
+                    residual[first[end.structure] + k] -= column[3] * friction;
+                }
+            }
             stiffness -= relative.tr_mul(&(by_displacement * &relative));
         }
         for given in self.given() {
