@@ -31,6 +31,8 @@ const SECTIONS: &[(&str, &str)] = &[
     ("WrittenBearing", "bearing"),
     ("StiffnessSection", "bearing.stiffness"),
     ("RollersSection", "bearing.rollers"),
+    ("RollerFilm", "bearing.rollers.film"),
+    ("RollerAmbient", "bearing.rollers.ambient"),
     ("CouplingSection", "coupling"),
     ("Mounting", "bearing.mounting"),
     ("BoreTilt", "bearing.mounting.misalignment"),

@@ -28,13 +28,15 @@ use nalgebra::{RowVector6, Vector3, Vector6};
 use super::LinkForce;
 pub use super::roller_oil::Lubricant;
 use super::roller_oil::{MODULUS, Of};
-use super::rollers::{Geometry, RIB_PLACE};
+use super::rollers::Geometry;
 use crate::numerics::elementary::{ln, pow};
 
 /// [rad/s] speed of the rings below which friction goes to none, a revolution a minute.
 const LEAST_SPEED: f64 = 0.1;
 /// [-] load over `E' R l` below which the rigid rolling force goes in proportion to the load: the slope of a root has no end.
 const LEAST_LINE: f64 = 1e-7;
+/// [-] half of the height of a rib over the roller's diameter: ribs of NU 206, NU 210 and NU 306 have a fifth of it in catalogues (recalled). An estimate.
+const RIB_MIDDLE: f64 = 0.1;
 /// [-] radius of the ball that touches a rib's plane over the roller's diameter. Spherical ends of tapered rollers have nine tenths of the way to the apex, ten to
 /// fifteen diameters; those of cylindrical ones are of that order. An estimate.
 const RIB_BALL: f64 = 10.0;
@@ -130,11 +132,10 @@ fn rib_normal(of: &Geometry) -> Vector3<f64> {
     })
 }
 
-/// \[m] distance of where a rib touches a roller's end from the line on the race: rollers turn against the race about that. A tapered roller's end is larger than its
-/// middle.
+/// \[m] distance of the middle of a rib from the line on the race: rollers turn against the race about that. A tapered roller's end is larger than its middle.
 fn beside_line(of: &Geometry) -> f64 {
     let larger = of.taper.map_or(0.0, |taper| 0.5 * of.length * (0.5 * taper.roller_angle).tan());
-    (0.5 - RIB_PLACE) * of.diameter + larger
+    RIB_MIDDLE * of.diameter + larger
 }
 
 impl Friction {

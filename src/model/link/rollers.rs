@@ -33,7 +33,7 @@ const STATIC_PRESSURE: f64 = 4e9;
 const SAFEST: f64 = 1e6;
 /// [-] place of the contact of a roller's end with a rib from the roller's axis, over the diameter, and radius of a punch that is as stiff,
 /// over the diameter: estimates.
-pub(super) const RIB_PLACE: f64 = 0.45;
+const RIB_PLACE: f64 = 0.45;
 const RIB_RADIUS: f64 = 0.05;
 
 /// What a roller bearing of one row is made of.
