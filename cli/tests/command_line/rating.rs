@@ -327,3 +327,35 @@ fn closed_form_lives_of_rollers_add_up_as_those_of_balls() {
     let lives = ["ball", "roller"].map(|name| row("all", name)[6].powf(-10.0 / 9.0));
     near(row("all", "(machine)")[6], (lives[0] + lives[1]).powf(-0.9));
 }
+
+#[test]
+fn invariant_rollers_in_oil_have_torque_and_losses() {
+    let scratch = Scratch::new("rating-rollers-in-oil");
+    let machine = "[shaft]\nspeed = \"1500 rpm\"\nmass = 2.0\npolar_inertia = 1e-3\ntransverse_inertia = 3e-3\n\
+         [[shaft.load]]\nname = \"pull\"\nposition = \"60 mm\"\nforce = [0, 4000, 0]\n\
+         [[bearing]]\nname = \"ball\"\ncatalogue = \"6206\"\nmounting = { position = 0 }\n\
+         [[bearing]]\nname = \"roller\"\ncatalogue = \"NU 206\"\nmounting = { position = \"100 mm\" }\n\
+         set = { rollers = { film = { iso_vg = 68, temperature = \"70 degC\" } } }\n\
+         [load]\nduration = \"1 ms\"\noutput_interval = \"1 ms\"\n[[duty]]\nname = \"1\"\nhours = 10\n";
+    std::fs::write(scratch.path("machine.toml"), machine).unwrap();
+    let output = roulement(&["rating", &scratch.path("machine.toml")]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && !told.contains("no friction here"), "{told}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let cells = |bearing: &str| -> Vec<f64> {
+        let line = text.lines().find(|line| line.starts_with(&format!("1,{bearing},"))).unwrap();
+        line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
+    };
+    let own = cells("roller");
+    let output = roulement(&["equilibrium", &scratch.path("machine.toml"), "--json"]);
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let friction = &found["bearings_by_stiffness"]["roller"]["friction"];
+    for (cell, key) in [(10, "torque"), (11, "loss")] {
+        assert!((own[cell] / friction[key].as_f64().unwrap() - 1.0).abs() < 1e-6, "{text}");
+    }
+    assert!((cells("(machine)")[11] - cells("ball")[11] - own[11]).abs() < 1e-9 * own[11], "{text}");
+    // `effects` names what is left out, and what is in is no part of that.
+    let output = roulement(&["effects", &scratch.path("machine.toml")]);
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(told.contains("slip and its losses") && !told.contains("friction and losses"), "{told}");
+}
