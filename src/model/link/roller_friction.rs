@@ -27,7 +27,7 @@ use nalgebra::{RowVector6, Vector3, Vector6};
 
 use super::LinkForce;
 pub use super::roller_oil::Lubricant;
-use super::roller_oil::{MODULUS, Of};
+use super::roller_oil::{MODULUS, Of, RibFilm};
 use super::rollers::Geometry;
 use crate::numerics::elementary::{ln, pow};
 
@@ -190,6 +190,11 @@ impl Friction {
             s,
             lines: line,
             heat,
+            ribs: self
+                .given
+                .oil
+                .filter(|_| self.slips[0] > 0.0)
+                .map(|oil| RibFilm::new(&oil, self.rib_radius, self.surface(s))),
             parts: [0.0, 0.0, drag.value],
             by_displacement: RowVector6::zeros(),
             by_logarithm: drag.by_speed,
@@ -207,15 +212,6 @@ impl Friction {
         let u = self.surface(s);
         let [left, by_speed] = oil.left(s, u);
         (self.radii.map(|radius| oil.rolling([radius, self.length], u).map(|of| of * left)), by_speed)
-    }
-
-    /// [-] friction coefficient of a rib.
-    fn of_rib(&self, load: f64, slip: f64, u: f64) -> Of {
-        let dry = self.given.rib_friction;
-        match &self.given.oil {
-            Some(oil) => oil.friction(self.rib_radius, load, [slip, u], dry),
-            None => Of { value: dry, ..Of::default() },
-        }
     }
 
     /// [N m] drag of all rollers over their orbit, and moments against their spin, as one moment between the rings: a cylinder across a stream (White 1991), one
@@ -259,6 +255,8 @@ pub struct Turning<'a> {
     s: f64,
     lines: [[f64; 2]; 2],
     heat: f64,
+    /// Films of ribs; none without oil or ribs.
+    ribs: Option<RibFilm>,
     /// [N m] moments of rolling resistance, of ribs, of drag.
     parts: [f64; 3],
     /// Derivatives of their sum: by the displacement, by the logarithm of the speed, and by the rate through the centrifugal force.
@@ -304,12 +302,18 @@ impl Turning<'_> {
         let [axial, radial] = of.rib_load;
         let pressed = axial * force.x + radial * force.y;
         let (load, sign) = (pressed.abs(), pressed.signum());
-        for slips in of.slips.into_iter().filter(|slips| *slips > 0.0 && load > 0.0) {
-            let rib = of.of_rib(load, slips * self.s, of.surface(self.s));
-            self.parts[1] += slips * rib.value * load;
-            self.by_logarithm += slips * rib.by_speed * load;
-            let by_load = slips * (rib.value + rib.by_load * load) * sign;
-            by_force += Vector3::new(axial, radial, 0.0) * by_load;
+        if load > 0.0 && of.slips[0] > 0.0 {
+            let dry = of.given.rib_friction;
+            let coefficients = match &self.ribs {
+                Some(film) => film.friction(load, of.slips.map(|slips| slips * self.s), dry),
+                None => [Of { value: dry, ..Of::default() }; 2],
+            };
+            for (slips, rib) in of.slips.into_iter().zip(coefficients) {
+                self.parts[1] += slips * rib.value * load;
+                self.by_logarithm += slips * rib.by_speed * load;
+                by_force +=
+                    Vector3::new(axial, radial, 0.0) * (slips * (rib.value + rib.by_load * load) * sign);
+            }
         }
         (by_force, by_centrifugal)
     }

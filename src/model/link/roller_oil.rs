@@ -6,8 +6,9 @@ use crate::numerics::elementary::{asinh, exp, ln, pow};
 
 /// \[Pa] E' of two bodies of bearing steel, 206 GPa and 0.3.
 pub const MODULUS: f64 = 206e9 / (1.0 - 0.3 * 0.3);
-/// [-] load over `E' R^2` below which films of ribs do not grow any more.
-const LEAST_RIB: f64 = 1e-9;
+/// [-] logarithm of the load over `E' R^2` below which films of ribs do not grow any more, 1e-9; and that of 3/2.
+const LOG_LEAST_RIB: f64 = -20.723_265_836_946_414;
+const LOG_3_HALVES: f64 = 0.405_465_108_108_164_4;
 /// \[Pa] pressure of Roelands' law, and the logarithm of its pole with the opposite sign.
 const ROELANDS: [f64; 2] = [1.962e8, 9.67];
 /// [-] largest logarithm of the viscosity over that without pressure.
@@ -72,80 +73,112 @@ impl Lubricant {
         let speed = self.viscosity * u / (MODULUS * radius);
         let stiffening = self.pressure_viscosity * MODULUS;
         let w = load / (MODULUS * radius * length);
-        let left = heating((w / (2.0 * PI)).sqrt(), self.heat(u)).value;
+        let left = heating((w / (2.0 * PI)).sqrt(), powers_of_heat(self.heat(u))).value;
         let central = 3.06 * pow(speed, 0.69) * pow(stiffening, 0.56) * pow(w, -0.10);
         let least = 2.65 * pow(speed, 0.70) * pow(stiffening, 0.54) * pow(w, -0.13);
         [central, least].map(|film| film * radius * left)
     }
+}
 
-    /// [-] friction coefficient of a ball of a radius \[m] on a plane, under a load \[N] above 0, that slips with a speed [m/s] while the surfaces have the speed `u` [m/s]
-    /// in the mean; with that of dry surfaces. Both speeds go with that of the rings.
-    pub fn friction(&self, radius: f64, load: f64, [slip, u]: [f64; 2], dry: f64) -> Of {
-        // Hertz: the pressure goes with the cube root of the load.
-        let half_width = pow(1.5 * load * radius / MODULUS, 1.0 / 3.0);
-        let pressure = load / (PI * half_width * half_width);
-        let speed = self.viscosity * u / (MODULUS * radius);
-        let stiffening = self.pressure_viscosity * MODULUS;
-        let w = load / (MODULUS * radius * radius);
-        let (w, grows) = if w > LEAST_RIB { (w, 1.0) } else { (LEAST_RIB, 0.0) };
-        let heated = heating(1.5 * pressure / MODULUS, self.heat(u));
-        let [by_pressure, by_heat] = [heated.by_load, heated.by_speed];
-        let film = |factor: f64, [of_speed, of_stiffening, of_load]: [f64; 3]| Of {
-            value: factor
-                * radius
-                * heated.value
-                * pow(speed, of_speed)
-                * pow(stiffening, of_stiffening)
-                * pow(w, of_load),
-            by_load: of_load * grows + by_pressure / 3.0,
-            by_speed: of_speed + 2.0 * by_heat,
-        };
-        let central = film(2.69 * (1.0 - 0.61 * exp(-0.73)), [0.67, 0.53, -0.067]);
-        let least = film(3.63 * (1.0 - exp(-0.68)), [0.68, 0.49, -0.073]);
-        // Roelands, and its slope by the logarithm of the pressure.
+/// Films between roller ends and ribs at a speed: balls on planes.
+#[derive(Clone, Copy, Debug)]
+pub struct RibFilm {
+    oil: Lubricant,
+    /// \[m] radius of the ball.
+    radius: f64,
+    /// Powers of the thermal loading that its heating has.
+    heats: [f64; 2],
+    /// \[m] central and least film over the power of the load and heating.
+    films: [f64; 2],
+    /// [-] logarithm of the viscosity over Roelands' pole, and his exponent.
+    growth: f64,
+    exponent: f64,
+}
+
+impl RibFilm {
+    /// Films of an oil, for a radius \[m] and surfaces of a speed [m/s] in the mean.
+    pub fn new(oil: &Lubricant, radius: f64, u: f64) -> Self {
+        let speed = ln(oil.viscosity * u / (MODULUS * radius));
+        let stiffening = ln(oil.pressure_viscosity * MODULUS);
         let [of_pressure, pole] = ROELANDS;
-        let growth = ln(self.viscosity) + pole;
-        let exponent = self.pressure_viscosity * of_pressure / growth;
-        let power = pow(1.0 + pressure / of_pressure, exponent);
+        let growth = ln(oil.viscosity) + pole;
+        Self {
+            oil: *oil,
+            radius,
+            heats: powers_of_heat(oil.heat(u)),
+            films: [
+                2.69 * (1.0 - 0.61 * exp(-0.73)) * radius * exp(0.67 * speed + 0.53 * stiffening),
+                3.63 * (1.0 - exp(-0.68)) * radius * exp(0.68 * speed + 0.49 * stiffening),
+            ],
+            growth,
+            exponent: oil.pressure_viscosity * of_pressure / growth,
+        }
+    }
+
+    /// [-] friction coefficients under a load \[N] above 0 of two contacts that slip with these speeds [m/s], with that of dry surfaces. All speeds go with that of the rings.
+    pub fn friction(&self, load: f64, slips: [f64; 2], dry: f64) -> [Of; 2] {
+        let Self { oil, radius, growth, exponent, .. } = self;
+        // Hertz: the pressure goes with the cube root of the load.
+        let logarithm = ln(load / (MODULUS * radius * radius));
+        let half_width = radius * exp((logarithm + LOG_3_HALVES) / 3.0);
+        let pressure = load / (PI * half_width * half_width);
+        let (logarithm, grows) =
+            if logarithm > LOG_LEAST_RIB { (logarithm, 1.0) } else { (LOG_LEAST_RIB, 0.0) };
+        let heated = heating(1.5 * pressure / MODULUS, self.heats);
+        let film = |which: usize, [of_speed, of_load]: [f64; 2]| Of {
+            value: self.films[which] * heated.value * exp(of_load * logarithm),
+            by_load: of_load * grows + heated.by_load / 3.0,
+            by_speed: of_speed + 2.0 * heated.by_speed,
+        };
+        let [central, least] = [film(0, [0.67, -0.067]), film(1, [0.68, -0.073])];
+        // Roelands, and its slope by the logarithm of the pressure.
+        let [of_pressure, _] = ROELANDS;
+        let power = pow(1.0 + pressure / of_pressure, *exponent);
         let (thicker, slope) = match growth * (power - 1.0) {
             most if most >= LARGEST_GROWTH => (LARGEST_GROWTH, 0.0),
             none if none <= 0.0 => (0.0, 0.0),
             thicker => (thicker, growth * exponent * power * pressure / (of_pressure + pressure)),
         };
-        let over = self.viscosity * exp(thicker) * slip / (central.value * self.eyring_stress);
-        let over = over.min(f64::MAX);
-        let thinned = asinh(over);
-        let stress = self.eyring_stress * thinned;
-        let limit = self.limiting_shear * pressure;
-        // Logarithmic slopes of the stress over the pressure.
-        let sheared = match stress < limit && thinned > 0.0 {
-            true => {
-                let part = 1.0 / (1.0 + 1.0 / (over * over)).sqrt() / thinned;
-                let value = stress / pressure;
-                Of {
-                    value,
-                    by_load: value * (part * (slope / 3.0 - central.by_load) - 1.0 / 3.0),
-                    by_speed: value * part * (1.0 - central.by_speed),
-                }
-            }
-            false if stress < limit => Of::default(),
-            false => Of { value: self.limiting_shear, ..Of::default() },
-        };
-        let ratio = least.value / self.roughness;
+        let over_slip = oil.viscosity * exp(thicker) / (central.value * oil.eyring_stress);
+        let ratio = least.value / oil.roughness;
         let touching = 1.0 / ((1.0 + ratio) * (1.0 + ratio));
-        let falls = -2.0 * ratio / (1.0 + ratio) * touching * (dry - sheared.value);
-        Of {
-            value: sheared.value + (dry - sheared.value) * touching,
-            by_load: (sheared.by_load * (1.0 - touching) + falls * least.by_load) / load,
-            by_speed: sheared.by_speed * (1.0 - touching) + falls * least.by_speed,
-        }
+        slips.map(|slip| {
+            let over = (over_slip * slip).min(f64::MAX);
+            let thinned = asinh(over);
+            let stress = oil.eyring_stress * thinned;
+            // Logarithmic slopes of the stress over the pressure.
+            let sheared = match stress < oil.limiting_shear * pressure {
+                true if thinned > 0.0 => {
+                    let part = 1.0 / (1.0 + 1.0 / (over * over)).sqrt() / thinned;
+                    let value = stress / pressure;
+                    Of {
+                        value,
+                        by_load: value * (part * (slope / 3.0 - central.by_load) - 1.0 / 3.0),
+                        by_speed: value * part * (1.0 - central.by_speed),
+                    }
+                }
+                true => Of::default(),
+                false => Of { value: oil.limiting_shear, ..Of::default() },
+            };
+            let falls = -2.0 * ratio / (1.0 + ratio) * touching * (dry - sheared.value);
+            Of {
+                value: sheared.value + (dry - sheared.value) * touching,
+                by_load: (sheared.by_load * (1.0 - touching) + falls * least.by_load) / load,
+                by_speed: sheared.by_speed * (1.0 - touching) + falls * least.by_speed,
+            }
+        })
     }
 }
 
-/// [-] what heating of the inlet leaves of a film (Gupta, Cheng and others 1992, without sliding), by the largest pressure over E' and the thermal loading; with its
-/// logarithmic derivatives by both.
-fn heating(pressure: f64, heat: f64) -> Of {
-    let loss = 13.2 * pressure * pow(heat, 0.42);
+/// Powers of the thermal loading that [`heating`] takes.
+fn powers_of_heat(heat: f64) -> [f64; 2] {
+    [pow(heat, 0.42), pow(heat, 0.64)]
+}
+
+/// [-] what heating of the inlet leaves of a film (Gupta, Cheng and others 1992, without sliding), by the largest pressure over E' and powers of the thermal loading;
+/// with its logarithmic derivatives by the pressure and the loading.
+fn heating(pressure: f64, [to_loss, to_thinner]: [f64; 2]) -> Of {
+    let loss = 13.2 * pressure * to_loss;
     let (left, steep) = match loss <= LARGEST_LOSS {
         true => (1.0 - loss, loss / (1.0 - loss)),
         false => {
@@ -153,7 +186,7 @@ fn heating(pressure: f64, heat: f64) -> Of {
             (left, loss / (1.0 - LARGEST_LOSS))
         }
     };
-    let thinner = 0.213 * pow(heat, 0.64);
+    let thinner = 0.213 * to_thinner;
     Of {
         value: left / (1.0 + thinner),
         by_load: -steep,
