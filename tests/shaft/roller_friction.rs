@@ -380,6 +380,7 @@ const BEARINGS: [Published; 11] = [
     tapered("30206", [30.0, 62.0], 1.6),
     tapered("30210", [50.0, 90.0], 1.4),
 ];
+
 /// [N mm] SKF's rolling and sliding moment under a radial load \[N], at a speed [rpm] and a viscosity [mm2/s], in an oil bath, with a boundary friction of 0.12.
 fn published(of: &Published, radial: f64, speed: f64, viscosity: f64) -> [f64; 2] {
     let [bore, outside] = of.size;
@@ -402,8 +403,7 @@ fn published(of: &Published, radial: f64, speed: f64, viscosity: f64) -> [f64; 2
         ),
     };
     let heating = 1.0 / (1.0 + 1.84e-9 * (speed * mean).powf(1.28) * viscosity.powf(0.64));
-    let starving =
-        3e-8 * viscosity * speed * (bore + outside) * (shape / (2.0 * (outside - bore)) as f64).sqrt();
+    let starving = 3e-8 * viscosity * speed * (bore + outside) * f64::sqrt(shape / (2.0 * (outside - bore)));
     let boundary = (-2.6e-8 * (speed * viscosity).powf(1.4) * mean).exp();
     let friction = boundary * 0.12 + (1.0 - boundary) * of_film;
     [heating * (-starving).exp() * rolling * (viscosity * speed).powf(0.6), friction * sliding]
@@ -424,6 +424,9 @@ fn ours(of: &Published, radial: f64, speed: f64, viscosity: f64) -> [f64; 2] {
     [friction.parts[0] * 1e3, friction.parts[1] * 1e3]
 }
 
+/// A point: place of its speed, SKF's moments and ours [N mm].
+type Compared = (usize, [f64; 2], [f64; 2]);
+
 /// Geometric mean of ratios, and the factor that they are off in root mean square.
 fn of_ratios(ratios: &[f64]) -> [f64; 2] {
     let n = ratios.len() as f64;
@@ -435,7 +438,7 @@ fn of_ratios(ratios: &[f64]) -> [f64; 2] {
 #[test]
 fn published_model_of_friction_torque_of_roller_bearings_in_oil() {
     // Load over C0, speed times mean diameter [mm/min], and viscosity.
-    let mut kinds: Vec<(&str, Vec<(usize, [f64; 2], [f64; 2])>)> = vec![];
+    let mut kinds: Vec<(&str, Vec<Compared>)> = vec![];
     for of in &BEARINGS {
         let rating = rollers(of.name, "").ratings().static_load_rating;
         for share in [0.03, 0.1, 0.25] {

@@ -132,7 +132,7 @@ pub struct Rollers {
     /// [N s/m, N s/m, N m s/rad] damping across the axis, along it, and of a tilt.
     pub damping: [f64; 3],
     /// Friction; none where nothing is said of it.
-    pub friction: Option<Friction>,
+    pub friction: Option<Box<Friction>>,
     /// \[m, rad] where the shaft is while it is in the middle.
     pub rest: Vector6<f64>,
 }
@@ -287,7 +287,7 @@ impl Rollers {
 
     /// The same, with rollers sought from where they were left.
     pub fn force_near(&self, displacement: &Vector6<f64>, rate: &Vector6<f64>, left: &[Left]) -> LinkForce {
-        self.sum((displacement, rate), left, self.friction.as_ref(), &mut |_| {})
+        self.sum((displacement, rate), left, self.friction.as_deref(), &mut |_| {})
     }
 
     /// The same, and where rollers are then.
@@ -298,7 +298,8 @@ impl Rollers {
         left: &[Left],
     ) -> (LinkForce, Vec<Left>) {
         let mut now = Vec::with_capacity(self.geometry.count);
-        let on = self.sum((displacement, rate), left, self.friction.as_ref(), &mut |roller| now.push(roller));
+        let on =
+            self.sum((displacement, rate), left, self.friction.as_deref(), &mut |roller| now.push(roller));
         (on, now)
     }
 
@@ -379,7 +380,7 @@ impl Rollers {
         let mut of = RollerOutputs { static_safety: SAFEST, stiffness, ..RollerOutputs::default() };
         let mut laminae = Laminae::new(self.turning(rate, outer));
         let [centrifugal, _] = self.centrifugal(rate[3]);
-        let mut turning = self.friction.as_ref().map(|friction| friction.at(self.speed_of_rings(rate)));
+        let mut turning = self.friction.as_deref().map(|friction| friction.at(self.speed_of_rings(rate)));
         let mut pressed = vec![];
         let stiffness = self.roller.lines[0].stiffness;
         // [1/m] curvatures of roller and race together.

@@ -111,7 +111,7 @@ fn rings(of: &RollerFilm, pitch: f64, roller: f64) -> [f64; 2] {
 }
 
 /// Friction of a bearing; none where nothing is said of it.
-pub fn friction(of: &RollersSection, geometry: &Geometry) -> Option<Friction> {
+pub fn friction(of: &RollersSection, geometry: &Geometry) -> Option<Box<Friction>> {
     let given = Rubbing {
         oil: of.film.as_ref().map(|film| lubricant(film, geometry)),
         rib_friction: of.rib_friction.unwrap_or(if of.film.is_some() { DRY } else { 0.0 }),
@@ -122,7 +122,7 @@ pub fn friction(of: &RollersSection, geometry: &Geometry) -> Option<Friction> {
             .map(|of| Surroundings { density: of.density.0, viscosity: of.viscosity.0 }),
     };
     let asked = of.film.is_some() || of.rib_friction.is_some() || of.ambient.is_some();
-    asked.then(|| Friction::new(given, geometry))
+    asked.then(|| Box::new(Friction::new(given, geometry)))
 }
 
 fn lubricant(of: &RollerFilm, geometry: &Geometry) -> Lubricant {
