@@ -299,6 +299,17 @@ fn invariant_the_equilibrium_and_the_housing_see_the_friction_of_rollers() {
     for part in ["friction torque", "rolling", "ribs", "of the roughness"] {
         assert!(text.contains(part), "{text}\nshould have {part}");
     }
+    // A housing that is soft against turning is in balance with the friction of its roller bearing at the start, and turns along with the shaft.
+    let housed = |text: &str| {
+        let housing = "[[housing]]\nname = \"case\"\nmass = \"5 kg\"\ninertia = [0.02, 0.02, 0.02]\ncentre = [0.1, 0, 0]\n\
+                       stiffness = [1e9, 1e9, 1e9, 100.0, 1e7, 1e7]\n[[housing.point]]\nname = \"top\"\nposition = [0.1, 0, 0.05]\n";
+        let text = text.replace("position = \"100 mm\" }", "position = \"100 mm\", housing = \"case\" }");
+        let system = system(&text.replacen("[[bearing]]", &format!("{housing}[[bearing]]"), 1));
+        system.outputs().housings[0].points[0].tilt.x
+    };
+    let dry = crate::roller_friction::text("30206", "", "[\"3 kN\", \"4 kN\", 0]");
+    let turned = 100.0 * (housed(&own) - housed(&dry));
+    assert!((turned / friction.torque() - 1.0).abs() < 1e-2, "{turned} {}", friction.torque());
 }
 
 #[test]
