@@ -147,6 +147,9 @@ fn refusals_of_bearings_between_shafts_name_the_key() {
         let why = refuse(own, to);
         assert!(parts.iter().all(|part| why.contains(part)), "{why}");
     }
+    let oiled = "catalogue = \"K 30x35x27\"\nset = { rollers = { film = { iso_vg = 68, temperature = \"70 degC\" } } }";
+    let why = refuse("catalogue = \"K 30x35x27\"", oiled);
+    assert!(why.contains("bearing.rollers") && why.contains("between two shafts"), "{why}");
     let springs = "stiffness = { radial = 1e8, axial = 1e8 }\nmounting = { position = 0, outer_shaft";
     let why = refuse("catalogue = \"K 30x35x27\"\nmounting = { position = 0, outer_shaft", springs);
     assert!(why.contains("bearing.mounting.outer_shaft") && why.contains("[[coupling]]"), "{why}");

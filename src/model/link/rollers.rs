@@ -254,11 +254,6 @@ impl Rollers {
         self.geometry.count as f64 * self.ratio * rate
     }
 
-    /// [rad/s] speed of the rings against each other, with which contacts roll and slide.
-    fn speed_of_rings(&self, rate: &Vector6<f64>) -> f64 {
-        rate[3]
-    }
-
     /// \[N] centrifugal force of a roller while the shaft turns at a rate [rad/s], and its derivative by that.
     fn centrifugal(&self, rate: f64) -> [f64; 2] {
         let over_rate = self.mass * 0.5 * self.geometry.pitch_diameter * self.ratio * self.ratio;
@@ -315,7 +310,7 @@ impl Rollers {
         let orbit = 0.5 * self.geometry.pitch_diameter;
         let [centrifugal, by_rate] = self.centrifugal(rate[3]);
         let mut on = LinkForce::none();
-        let mut turning = friction.map(|friction| friction.at(self.speed_of_rings(rate)));
+        let mut turning = friction.map(|friction| friction.at(rate[3]));
         for Seen { cosine: c, sine: s, moved, settled } in self.each(&d, centrifugal, left) {
             see(Left { place: settled.place, race: moved });
             // Motion of a race in the plane by the displacement, and the same by the azimuth.
@@ -380,7 +375,7 @@ impl Rollers {
         let mut of = RollerOutputs { static_safety: SAFEST, stiffness, ..RollerOutputs::default() };
         let mut laminae = Laminae::new(self.turning(rate, outer));
         let [centrifugal, _] = self.centrifugal(rate[3]);
-        let mut turning = self.friction.as_deref().map(|friction| friction.at(self.speed_of_rings(rate)));
+        let mut turning = self.friction.as_deref().map(|friction| friction.at(rate[3]));
         let mut pressed = vec![];
         let stiffness = self.roller.lines[0].stiffness;
         // [1/m] curvatures of roller and race together.

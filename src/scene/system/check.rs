@@ -218,6 +218,14 @@ fn linked(bearing: &WrittenBearing) -> Result<(), SceneError> {
                    misalignment alone, and outer_shaft of one by rollers";
         return Err(inside(SceneError::conflict(key, why)));
     }
+    let rubs = bearing
+        .rollers
+        .as_ref()
+        .is_some_and(|of| of.film.is_some() || of.rib_friction.is_some() || of.ambient.is_some());
+    if mounting.outer_shaft.is_some() && rubs {
+        let why = "is for rollers whose outer ring is on no shaft: film, rib_friction and ambient are not simulated between two shafts";
+        return Err(inside(SceneError::conflict("bearing.rollers", why)));
+    }
     if mounting.outer_shaft.is_some() && bearing.stiffness.is_some() {
         let why = "is for balls and rollers: springs between two shafts are a [[coupling]]";
         return Err(inside(SceneError::conflict("bearing.mounting.outer_shaft", why)));
