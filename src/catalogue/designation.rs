@@ -117,6 +117,7 @@ const KINDS: [(&str, &[&str]); 4] = [
 ];
 
 const TAPERED: &str = "a tapered roller bearing";
+const DOUBLE_ROW: &str = "a double-row angular contact ball bearing";
 
 /// Other kinds of bearings by how many digits their numbers have, and what these begin with.
 #[rustfmt::skip]
@@ -128,7 +129,7 @@ const SERIES: [(&str, usize, &[&str]); 10] = [
     ("a spherical roller thrust bearing", 5, &["292", "293", "294"]),
     ("a self-aligning ball bearing", 4, &["12", "13", "22", "23"]),
     ("a self-aligning ball bearing", 5, &["112", "113"]),
-    ("a double-row angular contact ball bearing", 4, &["32", "33", "52", "53"]),
+    (DOUBLE_ROW, 4, &["32", "33", "52", "53"]),
     ("a double-row deep groove ball bearing", 4, &["42", "43"]),
     ("a self-aligning ball bearing", 3, &["108", "126", "127", "129", "135"]),
 ];
@@ -244,6 +245,15 @@ pub(super) fn rollers(name: &str) -> Option<(String, String, Clearance)> {
     ["N", "NU", "NJ", "NUP"]
         .contains(&prefix.as_str())
         .then(|| (prefix, head.number, class.unwrap_or_default()))
+}
+
+/// Number of a double-row angular contact bearing, and whether its letter is B; none where a name is of something else.
+pub(super) fn double_row(name: &str) -> Option<(String, bool)> {
+    let upper = name.to_ascii_uppercase();
+    let mut words = words_of(&upper).into_iter();
+    let head = words.find_map(Head::of)?;
+    let is_b = head.rest.starts_with('B') || head.rest.is_empty() && words.next() == Some("B");
+    (head.other_kind() == Some(DOUBLE_ROW)).then_some((head.number, is_b))
 }
 
 /// Series and code of the bore of a tapered roller bearing; nothing within where what follows them changes its contact angle. None where a name is of something else.

@@ -24,6 +24,7 @@ mod cage;
 mod clearance;
 mod designation;
 mod digits;
+mod double_row;
 mod error;
 mod estimate;
 mod request;
@@ -36,6 +37,7 @@ mod text;
 use std::path::Path;
 
 pub use clearance::Clearance;
+pub use double_row::{DoubleRow, rows_of};
 pub use error::CatalogueError;
 pub use estimate::{Candidate, STEEL_OF_ISO_76};
 pub use request::{Cage, Request};

@@ -6,6 +6,7 @@ mod caged;
 mod common;
 mod cost;
 mod coupling;
+mod double_row;
 mod equilibrium;
 mod flange;
 mod frame;

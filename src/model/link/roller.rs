@@ -99,7 +99,9 @@ pub struct Settled {
     pub rib: f64,
     /// \[N, N, N m] force and moment on the inner race.
     pub force: Vector3<f64>,
-    /// Derivative of that by the motion of the inner race, with the opposite sign.
+    /// Derivative of its motion by that of the inner race.
+    pub follows: Matrix3<f64>,
+    /// Derivative of the force by the motion of the inner race, with the opposite sign.
     pub stiffness: Matrix3<f64>,
     /// [-, -, m] derivative of the force by the centrifugal force.
     pub by_centrifugal: Vector3<f64>,
@@ -205,9 +207,9 @@ impl Roller {
             let step = whole * (LONGEST_STEP / far.max(LONGEST_STEP));
             let mut part = 1.0;
             let mut moved = None;
-            let free = self.free_part(&place, p, &step);
             let down = r.dot(&step);
-            let left = down * (1.0 - free * step.norm() / whole.norm());
+            // Most steps are taken whole: what comes in on the way is asked for after that.
+            let mut on_the_way = None;
             let mut soft = true;
             for _ in 0..MAX_TRIALS {
                 let trial = place + step * part;
@@ -221,6 +223,8 @@ impl Roller {
                     moved = Some((trial, there, next));
                     break;
                 }
+                let free = *on_the_way.get_or_insert_with(|| self.free_part(&place, p, &step));
+                let left = down * (1.0 - free * step.norm() / whole.norm());
                 let up = -next.dot(&step);
                 part = if free < NEAR * part && left > 0.0 && up > 0.0 {
                     // What comes in there turns the slope round, softly or at once: both are tried in turn.
@@ -244,6 +248,7 @@ impl Roller {
             loads: here.loads,
             rib: here.rib,
             force: here.pressed[0],
+            follows,
             stiffness: inner - inner * follows,
             by_centrifugal: follows.tr_mul(&Vector3::y()),
             stored: here.elastic - outside.dot(&place),

@@ -12,7 +12,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::LinkForce;
@@ -167,6 +167,8 @@ pub struct Left {
     pub place: Vector3<f64>,
     /// \[m, m, rad] that of the inner race.
     pub race: Vector3<f64>,
+    /// Derivative of its motion by that of the inner race.
+    pub follows: Matrix3<f64>,
 }
 
 /// A roller of a bearing at a displacement.
@@ -269,8 +271,7 @@ impl Rollers {
             let (sine, cosine) = (first + TAU * index as f64 / self.geometry.count as f64).sin_cos();
             let tilt = tilt_z * cosine - tilt_y * sine;
             let moved = Vector3::new(x - orbit * tilt, y * cosine + z * sine, tilt);
-            // Both races are about as stiff.
-            let about = left.get(index).map(|left| left.place + (moved - left.race) * 0.5);
+            let about = left.get(index).map(|left| left.place + left.follows * (moved - left.race));
             Seen { cosine, sine, moved, settled: self.roller.settle(&moved, centrifugal, about) }
         })
     }
@@ -312,7 +313,7 @@ impl Rollers {
         let mut on = LinkForce::none();
         let mut turning = friction.map(|friction| friction.at(rate[3]));
         for Seen { cosine: c, sine: s, moved, settled } in self.each(&d, centrifugal, left) {
-            see(Left { place: settled.place, race: moved });
+            see(Left { place: settled.place, race: moved, follows: settled.follows });
             // Motion of a race in the plane by the displacement, and the same by the azimuth.
             let plane = |c: f64, s: f64| {
                 Matrix3x6::from_rows(&[

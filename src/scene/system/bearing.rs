@@ -8,7 +8,7 @@ use toml::{Table, Value};
 use super::rollers::bearing;
 use super::spring::SceneSpring;
 use super::{MountedScene, SystemLoad};
-use crate::catalogue::CatalogueError;
+use crate::catalogue::{CatalogueError, DoubleRow};
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::effects::defects::On;
 use crate::model::state::stack;
@@ -70,6 +70,8 @@ pub struct Catalogue {
     pub balls: fn(&str, &Path) -> Looked,
     /// Keys of the rollers of a roller bearing, as a text; none of another one.
     pub rollers: fn(&str) -> Option<Result<String, CatalogueError>>,
+    /// Rows of a double-row ball bearing; none of another one.
+    pub rows: fn(&str) -> Option<Result<DoubleRow, CatalogueError>>,
 }
 
 impl WrittenBearing {
@@ -274,7 +276,7 @@ fn check_changes(set: &Table, is_under_wrench: bool) -> Result<(), SceneError> {
 
 /// Takes the ideal cage out of a scene of the catalogue. Balls that one keeps apart cannot go along with a ring that shifts, which damps a
 /// shaft's vibrations many times too much (docs/model.md, section 19), and it may not stand in a housing.
-fn leave_balls_free(table: &mut Table) {
+pub fn leave_balls_free(table: &mut Table) {
     if let Some(effects) = table.get_mut("effects").and_then(Value::as_table_mut) {
         effects.remove("cage");
     }

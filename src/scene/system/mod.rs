@@ -14,6 +14,7 @@ mod planets;
 mod ranges;
 mod roller_film;
 mod rollers;
+mod rows;
 mod source;
 pub mod spring;
 
@@ -183,10 +184,10 @@ pub struct SystemLoad {
 const CATALOGUE: Catalogue = Catalogue {
     balls: |name, folder| catalogue::scene_of(name, Some(folder)),
     rollers: catalogue::rollers_of,
+    rows: catalogue::rows_of,
 };
 /// The same without the shelf, for texts that stand alone.
-const TABLE: Catalogue =
-    Catalogue { balls: |name, _| catalogue::scene_of(name, None), rollers: catalogue::rollers_of };
+const TABLE: Catalogue = Catalogue { balls: |name, _| catalogue::scene_of(name, None), ..CATALOGUE };
 
 /// The file as it is written.
 #[derive(Deserialize)]
@@ -285,6 +286,7 @@ impl SystemScene {
         let none = Catalogue {
             balls: |_, _| Err("a package has the scenes of its bearings, and no catalogue".into()),
             rollers: |_| None,
+            rows: |_| None,
         };
         Self::alone(text, none)
     }
@@ -296,6 +298,10 @@ impl SystemScene {
         catalogue: Catalogue,
         place: &dyn Fn(SceneError, Option<usize>) -> SceneError,
     ) -> Result<Self, SceneError> {
+        // Lines of the text with the rows are not those that the reader of a message has.
+        if let Some(text) = rows::in_rows(text, catalogue).map_err(|why| place(why, None))? {
+            return Self::read(&text, folder, catalogue, &|why, _| place(why, None));
+        }
         check::elsewhere(text).map_err(|why| place(why, None))?;
         let mut written: Written = explain::read(text).map_err(|(why, spot)| place(why, spot))?;
         let placed = |error| place(error, None);
