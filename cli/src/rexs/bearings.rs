@@ -1,6 +1,6 @@
 //! Bearings and couplings of a REXS model: by the catalogue, by dimensions and load ratings, by their inner geometry, or by their stiffness.
 
-use roulement::catalogue::{Request, rollers_of, scene_of};
+use roulement::catalogue::{Request, rollers_of, rows_of, scene_of};
 use toml::{Table, Value};
 
 use super::frame::{Axes, Frame};
@@ -138,7 +138,10 @@ fn bearing(
         preload: if has_balls && is_angular || is_tapered { preload } else { 0.0 },
         offset: across(["misalignment_in_v_direction", "misalignment_in_w_direction"])?,
         misalignment: across(["angular_misalignment_around_v_axis", "angular_misalignment_around_w_axis"])?,
-        clearance: if matches!(kind, Kind::Catalogue(_)) && !is_angular { clearance(of)? } else { None },
+        clearance: match &kind {
+            Kind::Catalogue(name) if !is_angular && rows_of(name).is_none() => clearance(of)?,
+            _ => None,
+        },
         kind,
         ..Bearing::default()
     })
@@ -184,6 +187,11 @@ fn kind(model: &Model, of: &Component, way: f64, notes: &mut Vec<String>) -> Res
         && let Some(Ok(_)) = rollers_of(name)
     {
         return Ok(Kind::Rollers(name.to_owned()));
+    }
+    // Both rows slide as one or not at all: those that take no axial force are springs.
+    let held = of.text("axial_force_absorption") != Some("no_direction");
+    if let Some(name) = designation(of).filter(|name| held && matches!(rows_of(name), Some(Ok(_)))) {
+        return Ok(Kind::Catalogue(name.to_owned()));
     }
     if rows > 1.0 || !matches!(type_, "" | "radial_grooved_ball_bearing" | "angular_contact_ball_bearing") {
         let why = if rows > 1.0 { format!("{rows} rows") } else { type_.replace('_', " ") };

@@ -200,6 +200,29 @@ fn closed_form_tapered_bearings_of_a_file_hold_the_shaft_each_its_way() {
 }
 
 #[test]
+fn consistency_a_double_row_bearing_of_a_file_is_both_rows() {
+    let scratch = Scratch::new("rexs-double");
+    let (before, after) = OLD.split_once("<component id=\"52\"").unwrap();
+    let (own, rest) = after.split_once("</component>").unwrap();
+    let own =
+        own.replace("6206", "3206 A").replace("radial_grooved_ball_bearing", "angular_contact_ball_bearing");
+    let rows = "<attribute id=\"number_of_bearing_rows\" unit=\"none\">2</attribute>";
+    let (tag, attributes) = own.split_once('>').unwrap();
+    let file = format!("{before}<component id=\"52\"{tag}>{rows}{attributes}</component>{rest}");
+    let (text, told) = imported(&scratch, "gearbox.rexs", file.as_bytes());
+    assert!(text.contains("catalogue = \"3206 A\"") && !told.contains("3206"), "{text}\n{told}");
+    // What it carries is shared by both.
+    let found = equilibrium(&scratch, &text);
+    let name = text.parse::<toml::Table>().unwrap()["bearing"].as_array().unwrap().iter().find_map(|of| {
+        let own = of.get("catalogue")?.as_str()? == "3206 A";
+        own.then(|| of["name"].as_str().unwrap().to_owned())
+    });
+    let name = name.unwrap();
+    let [one, other] = ["-1", "-2"].map(|row| force(&found, &format!("{name}{row}")));
+    assert!(one[1].hypot(one[2]) > 10.0 && other[1].hypot(other[2]) > 10.0, "{one:?} {other:?}");
+}
+
+#[test]
 fn invariant_rollers_between_two_shafts_go_there_and_back() {
     let scratch = Scratch::new("rexs-between");
     let text = include_str!("../../../scenes/shafts/idler.toml");
