@@ -431,7 +431,7 @@ fn ours(of: &Published, radial: f64, speed: f64, viscosity: f64) -> [f64; 2] {
     let rollers = rollers(of.name, &keys);
     let rate = turning(speed);
     let d = rest(&rollers, [of.thrust * radial, radial], &rate);
-    let friction = rollers.outputs(&d, &rate, &[]).friction.unwrap();
+    let friction = rollers.outputs(&d, &rate, &[], None).friction.unwrap();
     [friction.parts[0] * 1e3, friction.parts[1] * 1e3]
 }
 

@@ -252,7 +252,7 @@ impl fmt::Display for DutyRating {
             words.extend(
                 self.worst(name).map(|worst| format!("{} takes {:.0} %", worst.load, 100.0 * worst.taken)),
             );
-            writeln!(out, "  {:<15}{}", if name.is_empty() { "bearing" } else { name }, words.join(", "))?;
+            writeln!(out, "  {:<14} {}", if name.is_empty() { "bearing" } else { name }, words.join(", "))?;
         }
         if let Some(of) = of_machine(&self.together) {
             let mut words = life(of.hours);

@@ -50,9 +50,8 @@ pub fn duty(
         }
         let oil = oil(model, case)?.filter(|oil| Some(*oil) != gearbox.oil);
         for (oil, bearing) in oil.iter().flat_map(|oil| gearbox.bearings.iter().map(move |of| (oil, of))) {
-            if bearing.kind.has_balls() {
-                set.push((format!("bearing.{}.set.film.viscosity", bearing.name), viscosity(oil)));
-            }
+            let key = bearing.film().map(|film| format!("bearing.{}.set.{film}.viscosity", bearing.name));
+            set.extend(key.map(|key| (key, viscosity(oil))));
         }
         let share = share(case)?.unwrap_or_else(|| {
             notes.push(format!("load case {}: no part of the time is given: as long as others", index + 1));

@@ -210,6 +210,17 @@ impl Default for Kind {
     }
 }
 
+impl Bearing {
+    /// Key of its oil in what is set of it; none of springs, and of rollers between two shafts, whose friction is not simulated.
+    pub fn film(&self) -> Option<&'static str> {
+        match self.kind {
+            Kind::Catalogue(_) | Kind::Scene(_) => Some("film"),
+            Kind::Rollers(_) if self.outer_shaft.is_none() => Some("rollers.film"),
+            Kind::Rollers(_) | Kind::Springs(_) => None,
+        }
+    }
+}
+
 impl Kind {
     /// Its designation; none of what has none.
     pub fn name(&self) -> &str {
@@ -224,7 +235,7 @@ impl Kind {
         matches!(self, Self::Rollers(name) if matches!(rollers_of(name), Some(Ok(keys)) if keys.contains("contact_angle")))
     }
 
-    /// Is it a ball bearing, whose seat may slide and which has oil?
+    /// Is it a ball bearing, whose seat may slide?
     pub fn has_balls(&self) -> bool {
         matches!(self, Self::Catalogue(_) | Self::Scene(_))
     }

@@ -261,19 +261,19 @@ fn bearing(file: &mut File, of: &Bearing, gearbox: &Gearbox) {
         }
     }
     file.key("mounting", &format!("{{ {} }}", mounting.join(", ")));
-    let found = gearbox.oil.as_ref().filter(|_| of.kind.has_balls());
+    let found = gearbox.oil.as_ref().zip(of.film());
     let pressed = Some(of.preload).filter(|way| is_tapered && *way != 0.0);
     if found.is_some() || of.clearance.is_some() || pressed.is_some() {
         file.0 += "[bearing.set]\n";
     }
     if let Some(way) = pressed {
-        file.key("rollers", &format!("{{ axial_clearance = {} }}", quantity(-way, "m")));
+        file.key("rollers.axial_clearance", &quantity(-way, "m"));
     }
     if let Some(clearance) = of.clearance {
         file.key("bearing", &format!("{{ diametral_clearance = {} }}", quantity(clearance, "m")));
     }
-    if let Some(found) = found {
-        file.key("film", &oil(found));
+    if let Some((found, key)) = found {
+        file.key(key, &oil(found));
     }
 }
 
