@@ -29,7 +29,8 @@ pub struct WrittenBearing {
     pub scene: Option<Value>,
     /// Its designation in the catalogue, such as 7206 B.
     pub catalogue: Option<String>,
-    /// Level of its model; of rollers `"equilibrium"` if not given.
+    /// Level of its model: its motion in time (`"dynamic"`, if not given), elements in balance at every place of its rings, without states
+    /// (`"equilibrium"`; rollers always are), or the one that what acts on it asks for (`"auto"`).
     pub level: Option<BearingLevel>,
     /// Its stiffness, in place of a scene: springs instead of balls.
     pub stiffness: Option<StiffnessSection>,
