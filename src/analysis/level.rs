@@ -117,7 +117,7 @@ fn look(scene: &SystemScene, place: &str, reasons: &mut [Option<String>]) -> Res
 /// Why a bearing in balance needs states.
 fn acting(bearing: &Simulation) -> Option<String> {
     let estimate = match on_shaft(bearing) {
-        Ok(estimate) => estimate,
+        Ok(estimate) => Estimate { power: bearing.outputs().losses.total(), ..estimate },
         Err(why) => return Some(why.to_string()),
     };
     let Estimate { spacing, rings, .. } = &estimate;
@@ -139,6 +139,14 @@ fn acting(bearing: &Simulation) -> Option<String> {
         return Some(format!("it carries {} of C: balls may skid below {}", percent(load), percent(LIGHT)));
     }
     let held = estimate.held_back(USUAL_CLEARANCE * 2.0 * estimate.ball_radius);
-    (held >= estimate.threshold)
-        .then(|| format!("a cage holds balls back, by {} of all losses", percent(held)))
+    // What is no number is no small part.
+    if held < estimate.threshold {
+        return None;
+    }
+    let part = if held.is_finite() {
+        format!(", by {} of all losses without it", percent(held))
+    } else {
+        String::new()
+    };
+    Some(format!("a cage would hold balls back{part}"))
 }

@@ -117,6 +117,21 @@ fn consistency_what_needs_states_is_named() {
 }
 
 #[test]
+fn consistency_balls_that_a_cage_holds_back_are_said_so_in_parts_of_the_losses() {
+    // Both rows of a double-row bearing under a load and a thrust: contact angles differ from ball to ball, and so do their speeds.
+    let text = THREE
+        .replace(
+            "catalogue = \"6205\"\nlevel = \"auto\"\nmounting = { position = 0 }",
+            "catalogue = \"3206 A\"\nlevel = \"auto\"\nmounting = { position = 0 }",
+        )
+        .replace("force = [0, \"2 kN\", \"-3 kN\"]", "force = [\"500 N\", \"2 kN\", \"-3 kN\"]");
+    let (levels, notes) = found(&text, false);
+    let left = notes.lines().find(|line| line.starts_with("bearing left-1")).unwrap();
+    assert!(levels[0] == Dynamic && left.contains("a cage would hold balls back, by "), "{notes}");
+    assert!(!left.contains("inf") && !left.contains("NaN"), "{left}");
+}
+
+#[test]
 fn consistency_a_package_goes_by_the_ranges_that_an_importer_has() {
     let (levels, notes) = found(THREE, true);
     assert_eq!(levels, [Dynamic; 3], "{notes}");
