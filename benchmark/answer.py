@@ -19,7 +19,7 @@ HERE = Path(__file__).resolve().parent
 DOCUMENT = HERE.parent / "docs" / "benchmark.md"
 BEGIN, END = "<!-- begin verdicts -->\n", "<!-- end -->"
 # Tables of answers as the document has them: whose they are, the file, and its families where it has not all.
-SHOWN = [("roulement", "roulement.csv", None), ("roulement, contacts by the table that runs use", "roulement-default-law.csv", "contacts")]
+SHOWN = [("roulement", "roulement.csv", None), ("roulement, contacts by the table that runs use", "roulement-default-law.csv", "contacts"), ("Exudyn 1.13.6", "exudyn.csv", None)]
 
 
 def called(program, *arguments):
@@ -110,7 +110,8 @@ def table():
         counts = check.counted(check.verdicts(check.answers(HERE / "answers" / file, known), known))
         for family, count in counts.items():
             if only in (None, family):
-                rows.append(f"| {whose} | {family} | {count['right']} | {count['wrong']} | {count['not answered']} | {count['worst']:.2g} |")
+                largest = f"{count['worst']:.2g}" if count["right"] + count["wrong"] else "-"
+                rows.append(f"| {whose} | {family} | {count['right']} | {count['wrong']} | {count['not answered']} | {largest} |")
     return "\n".join(rows) + "\n"
 
 

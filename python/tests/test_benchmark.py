@@ -88,6 +88,19 @@ def test_the_runner_gives_verdicts_on_our_answers_as_the_document_has_them(tmp_p
     assert written == answer.table(), "benchmark/answer.py renews docs/benchmark.md"
 
 
+def test_answers_of_exudyn_are_those_that_it_can_be_asked():
+    known = check.questions()
+    theirs = check.answers(FOLDER / "answers" / "exudyn.csv", known)
+    assert {(known[name]["family"], known[name]["quantity"] == "cage_speed") for name in theirs} == {("equilibria", False), ("hard", True), ("hard", False)}
+    counts = check.counted(check.verdicts(theirs, known))
+    assert [(counts[family]["right"], counts[family]["wrong"]) for family in ("equilibria", "hard")] == [(157, 0), (5, 0)]
+    # They are its own: to the last digit they differ from ours nearly everywhere.
+    ours = check.answers(FOLDER / "answers" / "roulement.csv", known)
+    assert sum(theirs[name] != ours[name] for name in theirs) > 120
+    script = (FOLDER / "exudyn_answers.py").read_text()
+    assert "import roulement" not in script and "subprocess" not in script
+
+
 @pytest.mark.parametrize("value", ["358", "nan", "-357", "inf", "0"])
 def test_a_wrong_answer_fails(tmp_path, value):
     name = "P-01.largest_inner_load"
