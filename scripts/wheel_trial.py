@@ -1,4 +1,4 @@
-"""What a wheel has to do where nothing but it is installed: run by scripts/wheels, beside thrust.toml."""
+"""What a wheel has to do where nothing but it is installed: run by scripts/wheels, beside thrust.toml, with the folders of its platforms."""
 
 import re
 import subprocess
@@ -14,7 +14,9 @@ stiffness = roulement.equilibrium(roulement.catalogue.bearing("7206 B")).stiffne
 print(f"friction power {power:.2f} W, axial stiffness of a 7206 B {stiffness * 1e-6:.0f} N/um")
 
 package = roulement.package(scene, "trial.fmu")
-print("package for", *sorted({Path(name).parts[1] for name in zipfile.ZipFile(package).namelist() if name.startswith("binaries/")}))
+folders = {Path(name).parts[1] for name in zipfile.ZipFile(package).namelist() if name.startswith("binaries/")}
+print("package for", *sorted(folders), f"{package.stat().st_size * 1e-6:.1f} MB")
+assert not sys.argv[1:] or folders == set(sys.argv[1:]), sys.argv
 from roulement.coupling import WRENCH  # noqa: E402
 
 from fmpy import simulate_fmu  # noqa: E402

@@ -122,8 +122,8 @@ def find_libraries():
     named = os.environ.get("ROULEMENT_LIBRARY")
     if named:
         return [Path(library) for library in named.split(os.pathsep)]
-    own = [Path(__file__).parent / "library" / name for name in ("libroulement.so", "roulement.dll", "libroulement.dylib")]
-    found = [library for library in own if library.is_file()]
+    # Of as many platforms as the package was built with; what each is, its contents tell.
+    found = sorted(path for path in (Path(__file__).parent / "library").glob("*roulement*") if path.suffix in (".so", ".dll", ".dylib"))
     program = os.environ.get("ROULEMENT_BIN") or shutil.which("roulement")
     if not found and program:
         found = [_native.library_beside(Path(program).resolve())]
