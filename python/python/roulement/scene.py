@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import sys
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -122,8 +123,10 @@ def find_libraries():
     named = os.environ.get("ROULEMENT_LIBRARY")
     if named:
         return [Path(library) for library in named.split(os.pathsep)]
-    # Of as many platforms as the package was built with; what each is, its contents tell.
-    found = sorted(path for path in (Path(__file__).parent / "library").glob("*roulement*") if path.suffix in (".so", ".dll", ".dylib"))
+    # Of as many platforms as the package was built with; what each is, its contents tell. The own one is first, as the program packs them.
+    own = {"win32": "roulement.dll", "darwin": "libroulement.dylib"}.get(sys.platform, "libroulement.so")
+    found = [path for path in (Path(__file__).parent / "library").glob("*roulement*") if path.suffix in (".so", ".dll", ".dylib")]
+    found.sort(key=lambda path: (path.name != own, path.name))
     program = os.environ.get("ROULEMENT_BIN") or shutil.which("roulement")
     if not found and program:
         found = [_native.library_beside(Path(program).resolve())]
