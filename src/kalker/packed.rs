@@ -1,7 +1,7 @@
 //! Numbers on a grid to a millionth, in few bytes: those of neighbouring nodes lie close to each other.
 //!
 //! Numbers are rounded to multiples of [`RESOLUTION`]; differences along every axis of the grid are kept as whole numbers, function by
-//! function. They have the code of Rice: the low bits as they are, and what is above them as that many zeros and a one. Groups of [`GROUP`]
+//! function. They have the code of Rice: the low bits as they are, and what is above them as that many zeros and a one. Groups of sixteen
 //! numbers say before how many low bits they have. (R. F. Rice, Some practical universal noiseless coding techniques, JPL 79-22, 1979.)
 
 /// [-] step of the numbers, 4.8e-7 at most beside what they were: a thousandth of what the table is off by between its nodes.
