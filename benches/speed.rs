@@ -10,10 +10,12 @@ use nalgebra::{Vector3, Vector6};
 use roulement::contact::many::ContactGroup;
 use roulement::contact::{BallMotion, RaceMotion};
 use roulement::dynamics::{Boundary, make_consistent};
+use roulement::effects::film::Section;
 use roulement::equilibrium::{self, EquilibriumInput, Gyroscopic};
 use roulement::fmi::v2::Status;
 use roulement::model::bodies::{PerRace, Race};
 use roulement::model::link::roller::Profile;
+use roulement::model::link::roller_friction::{Friction, Lubricant, Rubbing};
 use roulement::model::link::rollers::{Geometry, Rollers, Taper};
 use roulement::model::{Conditions, Model};
 use roulement::numerics::lanes::WIDTH;
@@ -166,9 +168,9 @@ fn equilibrium_solve(bencher: Bencher) {
 }
 
 /// Force of a bearing of 17 rollers that slowly turn: without ribs, between ribs under a thrust, and tapered. Sought from nothing, or from where a step left
-/// them that moved the shaft by 0.2 um.
-#[divan::bench(args = [("N", false), ("N", true), ("NUP", false), ("NUP", true), ("tapered", false), ("tapered", true)])]
-fn rollers(bencher: Bencher, (kind, known): (&str, bool)) {
+/// them that moved the shaft by 0.2 um; there in oil, too.
+#[divan::bench(args = ["N", "NUP", "tapered"].into_iter().flat_map(|kind| ["", "from where it was", "from where it was, in oil"].map(|how| [kind, how])))]
+fn rollers(bencher: Bencher, [kind, how]: [&str; 2]) {
     let taper = Taper { contact_angle: 0.245, roller_angle: 0.07, direction: 1.0 };
     let geometry = Geometry {
         count: 17,
@@ -183,11 +185,16 @@ fn rollers(bencher: Bencher, (kind, known): (&str, bool)) {
         first_azimuth: 0.0,
         taper: (kind == "tapered").then_some(taper),
     };
-    let bearing = Rollers::new(geometry, None);
+    let mut bearing = Rollers::new(geometry, None);
+    if how.ends_with("oil") {
+        let oil = Lubricant { oil: Section::default().lubricant(), viscosity: 0.02, starvation: 0.0 };
+        let given = Rubbing { oil: Some(oil), rib_friction: 0.08, rib_radius: None, around: None };
+        bearing.friction = Some(Box::new(Friction::new(given, &geometry)));
+    }
     let displaced = Vector6::new(20e-6, 25e-6, 5e-6, 0.0, 2e-4, -1e-4);
     let turning = Vector6::ith(3, 10.0);
     let before = displaced + Vector6::new(1e-7, -1e-7, 1e-7, -0.001, 0.0, 0.0);
-    let left = if known { bearing.leave(&before, &turning, &[]).1 } else { vec![] };
+    let left = if how.starts_with("from") { bearing.leave(&before, &turning, &[]).1 } else { vec![] };
     bencher.bench_local(|| bearing.force_near(divan::black_box(&displaced), &turning, &left));
 }
 

@@ -38,6 +38,10 @@ keys! {
 /// A mist of oil, which the estimate is for where the scene gives no medium: its viscosity is that of the air.
 const MIST: AmbientSection = AmbientSection { density: Density(50.0), viscosity: Viscosity(18e-6) };
 
+/// Ranges of a medium.
+pub const DENSITY: Range = Range::closed(0.0, 2e4, "kg/m3");
+/// See [`DENSITY`].
+pub const VISCOSITY: Range = Range::above(0.0, 1e4, "Pa.s");
 /// [-] drag coefficient of a sphere at large Reynolds numbers (Newton's range).
 const NEWTON_RANGE: f64 = 0.44;
 
@@ -195,15 +199,12 @@ impl Effect for Settings {
         "settled states with and without it; a mist of oil of 50 kg/m3 where it is off";
 
     const NUMBERS: &'static [Number<Self>] = &[
-        Number::fixed(
-            "effects.ambient.density",
-            Range::closed(0.0, 2e4, "kg/m3"),
-            "density of the medium around the balls",
-            |s| Place::Value(s.section.as_mut().map(|section| &mut section.density.0)),
-        ),
+        Number::fixed("effects.ambient.density", DENSITY, "density of the medium around the balls", |s| {
+            Place::Value(s.section.as_mut().map(|section| &mut section.density.0))
+        }),
         Number::fixed(
             "effects.ambient.viscosity",
-            Range::above(0.0, 1e4, "Pa.s"),
+            VISCOSITY,
             "dynamic viscosity of the medium around the balls",
             |s| Place::Value(s.section.as_mut().map(|section| &mut section.viscosity.0)),
         ),

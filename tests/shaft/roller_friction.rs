@@ -4,6 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix2, Vector2, Vector6};
+use roulement::effects::film::Section;
 use roulement::model::link::roller_friction::Lubricant;
 use roulement::model::link::rollers::Rollers;
 use roulement::scene::system::SystemScene;
@@ -96,17 +97,12 @@ fn grubin(viscosity: f64, u: f64, radius: f64, alpha: f64, load: f64) -> [f64; 2
 }
 
 fn lubricant(viscosity: f64) -> Lubricant {
-    Lubricant {
-        viscosity,
-        // No heating.
+    // Next to no heating, of the oil of `[film]`: 2.2e-8 1/Pa.
+    let oil = roulement::contact::film::Lubricant {
         temperature_viscosity: 1e-12,
-        conductivity: 0.14,
-        pressure_viscosity: 2.2e-8,
-        eyring_stress: 6e6,
-        limiting_shear: 0.08,
-        roughness: 1e-7,
-        starvation: 0.0,
-    }
+        ..Section::default().lubricant()
+    };
+    Lubricant { oil, viscosity, starvation: 0.0 }
 }
 
 #[test]
@@ -494,6 +490,22 @@ fn published_model_of_friction_torque_of_roller_bearings_in_oil() {
         assert!(
             (0.5..1.6).contains(&mean_rolling) && off_rolling < 2.0,
             "{kind}: {mean_rolling} {off_rolling}"
+        );
+        // What the document says beside the table: rolling by load, and ribs over SKF's sliding moment by speed.
+        let part = |wanted: &dyn Fn(usize) -> bool, ratio: &dyn Fn(&Compared) -> f64| {
+            let own: Vec<f64> = points
+                .iter()
+                .enumerate()
+                .filter(|(place, _)| wanted(*place))
+                .map(|(_, of)| ratio(of))
+                .collect();
+            of_ratios(&own)[0]
+        };
+        let by_load = [0, 1, 2].map(|load| part(&|place| place / 9 % 3 == load, &|of| of.2[0] / of.1[0]));
+        let by_speed =
+            [0, 1, 2].map(|speed| part(&|place| points[place].0 == speed, &|of| of.2[1] / of.1[1]));
+        println!(
+            "{kind}: rolling at 0.03, 0.1, 0.25 of C0 {by_load:.2?}, ribs slow, medium, fast {by_speed:.2?}"
         );
         let numbers =
             [mean_rolling, off_rolling, mean, off, at(0), at(1), at(2)].map(|value| count(value, 2));

@@ -120,15 +120,13 @@ impl Settings {
     pub fn films(&self, races: [RacewayFilm; 2], [pitch, ball]: [f64; 2], angular: bool) -> Option<Films> {
         let section = self.section.as_ref()?;
         let usual = Outline::usual(pitch, ball);
-        let bore = section.bore.map_or(usual.bore, |bore| bore.0) * 1e3;
-        let outside = section.outside.map_or(usual.outside, |outside| outside.0) * 1e3;
-        let geometry = GEOMETRY[usize::from(angular)];
-        let lengths = (bore + outside) * (geometry / (2.0 * (outside - bore))).sqrt();
+        let usual = [usual.bore, usual.outside];
+        let [bore, outside] = section.rings(usual);
         Some(Films {
             oil: section.oil(),
             temperature: section.oil_temperature(),
             warms: section.cold_temperature.is_some(),
-            starvation: section.supply.starvation() * lengths,
+            starvation: section.starvation(GEOMETRY[usize::from(angular)], usual),
             mean_diameter: 0.5e-3 * (bore + outside),
             mixed_friction: section.mixed_friction,
             density: section.density.0,
@@ -153,8 +151,20 @@ impl Section {
         }
     }
 
+    /// \[mm] bore of the inner ring and outside diameter of the outer one; usual ones \[m] if not given.
+    fn rings(&self, [bore, outside]: [f64; 2]) -> [f64; 2] {
+        [self.bore.map_or(bore, |bore| bore.0) * 1e3, self.outside.map_or(outside, |outside| outside.0) * 1e3]
+    }
+
+    /// [1/(mm2/s rpm)] exponent of SKF's starvation over viscosity and speed, by its geometry constant K_z and usual diameters of the rings \[m].
+    pub fn starvation(&self, geometry: f64, usual: [f64; 2]) -> f64 {
+        let [bore, outside] = self.rings(usual);
+        let lengths = (bore + outside) * (geometry / (2.0 * (outside - bore))).sqrt();
+        self.supply.starvation() * lengths
+    }
+
     /// \[degC] temperature of the oil where nothing has warmed.
-    fn oil_temperature(&self) -> f64 {
+    pub fn oil_temperature(&self) -> f64 {
         self.temperature.or(self.cold_temperature).map_or(40.0, |temperature| temperature.0)
     }
 

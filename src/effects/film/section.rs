@@ -223,30 +223,42 @@ impl Section {
         }
     }
 
+    /// Checks that its numbers are in their ranges, and that it says which oil there is.
+    ///
+    /// # Errors
+    /// Names the key, the value and the range.
+    pub fn check(&self) -> Result<(), SceneError> {
+        let mut settings = Settings { section: Some(self.clone()) };
+        NUMBERS.iter().try_for_each(|number| number.check(&mut settings))?;
+        self.names_an_oil()
+    }
+
+    fn names_an_oil(&self) -> Result<(), SceneError> {
+        let conflict = |key: &str, why: &str| Err(SceneError::conflict(key, why));
+        match (self.viscosity, self.iso_vg) {
+            (Some(_), Some(_)) => conflict("film", "give one of viscosity and iso_vg, not both"),
+            (None, None) => conflict("film", "give the oil: iso_vg with temperature, or viscosity"),
+            (Some(_), None) if self.temperature.or(self.cold_temperature).is_some() => {
+                conflict("film.viscosity", "a viscosity is given as it is: without a temperature")
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Checks keys against one another and against the rest of the scene.
     pub(super) fn agree(&self, setup: &Setup<'_>) -> Result<(), SceneError> {
         let conflict = |key: &str, why: &str| Err(SceneError::conflict(key, why));
-        match (self.viscosity, self.iso_vg) {
-            (Some(_), Some(_)) => return conflict("film", "give one of viscosity and iso_vg, not both"),
-            (None, None) => {
-                let why = "give the oil: iso_vg with temperature, or viscosity";
-                return conflict("film", why);
-            }
-            (None, Some(_)) if self.temperature.is_some() == self.cold_temperature.is_some() => {
-                let why = "with iso_vg give one of temperature (of the oil at the contacts) and cold_temperature (that where no \
-                           part has warmed by [growth])";
-                return conflict("film", why);
-            }
-            _ => {}
+        self.names_an_oil()?;
+        if self.iso_vg.is_some() && self.temperature.is_some() == self.cold_temperature.is_some() {
+            let why = "with iso_vg give one of temperature (of the oil at the contacts) and cold_temperature (that where no \
+                       part has warmed by [growth])";
+            return conflict("film", why);
         }
         if self.cold_temperature.is_some() && !setup.grows {
             return conflict(
                 "film.cold_temperature",
                 "it needs a section [growth], whose temperatures come to it",
             );
-        }
-        if self.viscosity.is_some() && self.temperature.or(self.cold_temperature).is_some() {
-            return conflict("film.viscosity", "a viscosity is given as it is: without a temperature");
         }
         if let (Some(bore), Some(outside)) = (self.bore, self.outside)
             && bore >= outside

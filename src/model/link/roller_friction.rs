@@ -18,8 +18,7 @@
 //! G U = alpha eta u/R,  W = Q/(E' R l),  L = eta beta u^2/k
 //! ```
 //! with inlet heating by Aihara (1987), whose torque formula of tapered roller bearings has this elastic force, too, and SKF's starvation. Lines of light loads have
-//! the rigid force: it comes in from none with the load. A rib is a ball on a plane: film of Hamrock and Dowson (1977) with the heating of Gupta and others (1992),
-//! shear of an Eyring fluid under the mean pressure, mixed with dry friction by Olver and Spikes (1998), as at balls.
+//! the rigid force: it comes in from none with the load. A rib is a ball on a plane with the film and the mixed friction that balls have ([`crate::contact::film`]).
 
 use std::f64::consts::{LN_10, PI};
 
@@ -29,6 +28,7 @@ use super::LinkForce;
 pub use super::roller_oil::Lubricant;
 use super::roller_oil::{MODULUS, Of, RibFilm};
 use super::rollers::Geometry;
+use crate::contact::film::RacewayFilm;
 use crate::numerics::elementary::{ln, pow};
 
 /// [rad/s] speed of the rings below which friction goes to none, a revolution a minute.
@@ -80,6 +80,8 @@ pub struct Friction {
     /// \[m] slip at ribs of both rings over the speed of the rings; 0 where there are none.
     slips: [f64; 2],
     rib_radius: f64,
+    /// Films of ribs; none without oil or ribs.
+    ribs: Option<RacewayFilm>,
     /// Loads by the axial and the radial force on the inner ring: of the lines, and of a rib.
     line_loads: [[f64; 2]; 2],
     rib_load: [f64; 2],
@@ -157,6 +159,7 @@ impl Friction {
         };
         let slips =
             [(0, 1.0 - ratio), (1, ratio)].map(|(race, part)| if has(race) { part * beside } else { 0.0 });
+        let rib_radius = given.rib_radius.unwrap_or(RIB_BALL * diameter);
         Self {
             given,
             count: count as f64,
@@ -167,16 +170,12 @@ impl Friction {
             spin: rolling / diameter,
             radii: [1.0 - gamma, 1.0 + gamma].map(|of| 0.5 * diameter * of),
             slips,
-            rib_radius: given.rib_radius.unwrap_or(RIB_BALL * diameter),
+            rib_radius,
+            ribs: given.oil.filter(|_| slips[0] > 0.0).map(|oil| oil.of_ribs(rib_radius)),
             line_loads: [[rib.y / determinant, -rib.x / determinant], [-outer.x, -outer.y]],
             rib_load: by_rib,
             thrown: outer.y,
         }
-    }
-
-    /// What it was made of.
-    pub fn given(&self) -> &Rubbing {
-        &self.given
     }
 
     /// Friction at a speed [rad/s] of the rings against each other.
@@ -190,11 +189,9 @@ impl Friction {
             s,
             lines: line,
             heat,
-            ribs: self
-                .given
-                .oil
-                .filter(|_| self.slips[0] > 0.0)
-                .map(|oil| RibFilm::new(&oil, self.rib_radius, self.surface(s))),
+            ribs: self.given.oil.zip(self.ribs.as_ref()).map(|(oil, ribs)| {
+                RibFilm::new(ribs, oil.viscosity, self.rib_radius, self.surface(s), self.given.rib_friction)
+            }),
             parts: [0.0, 0.0, drag.value],
             by_displacement: RowVector6::zeros(),
             by_logarithm: drag.by_speed,
@@ -256,7 +253,7 @@ pub struct Turning<'a> {
     lines: [[f64; 2]; 2],
     heat: f64,
     /// Films of ribs; none without oil or ribs.
-    ribs: Option<RibFilm>,
+    ribs: Option<RibFilm<'a>>,
     /// [N m] moments of rolling resistance, of ribs, of drag.
     parts: [f64; 3],
     /// Derivatives of their sum: by the displacement, by the logarithm of the speed, and by the rate through the centrifugal force.
@@ -303,12 +300,9 @@ impl Turning<'_> {
         let pressed = axial * force.x + radial * force.y;
         let (load, sign) = (pressed.abs(), pressed.signum());
         if load > 0.0 && of.slips[0] > 0.0 {
-            let dry = of.given.rib_friction;
-            let coefficients = match &self.ribs {
-                Some(film) => film.friction(load, of.slips.map(|slips| slips * self.s), dry),
-                None => [Of { value: dry, ..Of::default() }; 2],
-            };
-            for (slips, rib) in of.slips.into_iter().zip(coefficients) {
+            let dry = Of { value: of.given.rib_friction, ..Of::default() };
+            for slips in of.slips.into_iter().filter(|slips| *slips > 0.0) {
+                let rib = self.ribs.map_or(dry, |film| film.friction(load, slips * self.s));
                 self.parts[1] += slips * rib.value * load;
                 self.by_logarithm += slips * rib.by_speed * load;
                 by_force +=
@@ -352,7 +346,7 @@ impl Turning<'_> {
         let films = lines.filter(|(_, load)| *load > 0.0).map(|(race, load)| {
             let line = [self.friction.radii[race], self.friction.length];
             let [central, least] = oil.films(line, load, self.friction.surface(self.s));
-            [central, least / oil.roughness]
+            [central, least / oil.oil.roughness]
         });
         films.reduce(|one, other| [one[0].min(other[0]), one[1].min(other[1])])
     }
