@@ -51,6 +51,7 @@ fn section<'a>(sources: &'a [Source], name: &str) -> &'a Section {
             "schema/mesh.rs",
             "schema/rollers.rs",
             "scene/system/mod.rs",
+            "scene/system/read.rs",
             "scene/system/bearing.rs",
         ]
         .iter()

@@ -3,7 +3,8 @@
 use super::bearing::WrittenBearing;
 use super::check_motion::given_motion;
 use super::ranges::{BORE_OFFSET, BORE_TILT, INERTIA, MASS, POSITION};
-use super::{MountedScene, NamedLoad, Written, check_housing, rollers, spring};
+use super::read::Written;
+use super::{MountedScene, NamedLoad, check_housing, rollers, spring};
 use crate::effects::gravity::GRAVITY;
 use crate::numerics::size::ascending;
 use crate::schema::numbers::Range;

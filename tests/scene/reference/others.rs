@@ -41,7 +41,7 @@ fn one_of(place: &mut Value, kinds: &Value) {
 }
 
 fn machine(reference: &Reference, scene: &Value) -> Value {
-    let mut machine = whole("A machine of roulement", reference.object_of("Written", "scene/system/mod.rs"));
+    let mut machine = whole("A machine of roulement", reference.object_of("Written", "scene/system/read.rs"));
     machine["definitions"] = json!({ "scene": definition(scene) });
     let keys = &mut machine["properties"];
     // One as a section, or several.
