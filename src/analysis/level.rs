@@ -55,8 +55,6 @@ pub fn resolve(
             None => (name, "equilibrium", "nothing needs states".to_owned()),
         });
     let levels: Vec<_> = levels.collect();
-    let notes =
-        levels.iter().map(|(name, level, why)| format!("bearing {name}: auto: level = \"{level}\": {why}"));
     let unread = |why: &dyn std::fmt::Display| EstimateError::Start(why.to_string());
     let mut table: Table = toml::from_str(&scene.source).map_err(|why| unread(&why))?;
     let all = table.get_mut("bearing").and_then(Value::as_array_mut).into_iter().flatten();
@@ -66,8 +64,19 @@ pub fn resolve(
             keys.insert("level".into(), (*level).into());
         }
     }
-    let found = SystemScene::of_package(&table.to_string()).map_err(|why| unread(&why))?;
-    Ok((found, notes.collect()))
+    let mut found = SystemScene::of_package(&table.to_string()).map_err(|why| unread(&why))?;
+    let mut notes = vec![];
+    for (name, level, why) in levels {
+        let note = format!("auto: level = \"{level}\": {why}");
+        notes.push(format!("bearing {name}: {note}"));
+        // Summaries and packages have it beside the effects that were found.
+        if let Some(mounted) = found.bearings.iter_mut().find(|mounted| mounted.name == name) {
+            let all = [mounted.scene.effects.auto.found.clone(), vec![note]].concat();
+            mounted.scene.settle_effects(&[], &all);
+        }
+    }
+    found.renew_source();
+    Ok((found, notes))
 }
 
 /// All bearings have the level that they are read with, for as long as it is looked for.

@@ -52,6 +52,14 @@ fn found(text: &str, for_importer: bool) -> (Vec<Level>, String) {
     let again = SystemScene::of_package(&found.source).unwrap();
     let levels: Vec<Level> = found.bearings.iter().map(|mounted| mounted.level).collect();
     assert_eq!(levels, again.bearings.iter().map(|mounted| mounted.level).collect::<Vec<_>>());
+    // And why, where results and packages tell it.
+    for (mounted, note) in again.bearings.iter().zip(&notes) {
+        let told = &mounted.scene.effects.auto.found;
+        assert!(
+            told.last().is_some_and(|told| *note == format!("bearing {}: {told}", mounted.name)),
+            "{told:?}"
+        );
+    }
     (levels, notes.join("\n"))
 }
 
