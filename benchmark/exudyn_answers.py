@@ -49,6 +49,7 @@ from exudyn.utilities import (
 
 import answer
 import check
+from make import elliptic
 
 HERE = Path(__file__).resolve().parent
 STEEL = {"youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": 7800.0}
@@ -61,16 +62,6 @@ RAMP, FAR = 10, 1e5
 # [m/s] slip up to which friction is proportional to it. What rolls freely does not slip, whatever this is. [s] steps of RK44.
 SLIP = 0.02
 STEP = {"frequency": 2e-6, "cage_speed": 5e-7}
-
-
-def elliptic(m):
-    """Complete elliptic integrals K and E of a parameter, by the arithmetic-geometric mean."""
-    a, b, c, power, total = 1.0, math.sqrt(1.0 - m), math.sqrt(m), 1.0, 0.0
-    while abs(c) > 1e-16:
-        total += 0.5 * power * c * c
-        a, b, c, power = 0.5 * (a + b), math.sqrt(a * b), 0.5 * (a - b), 2.0 * power
-    k = 0.5 * math.pi / a
-    return k, k * (1.0 - total)
 
 
 def hertz(along, across, compliance):

@@ -42,6 +42,7 @@ fn closed_form_rows_share_a_radial_load_and_one_takes_a_thrust() {
     // In the middle of both: halves, that push apart.
     let mut half = (one - other) * 0.5;
     let apart = std::mem::replace(&mut half.x, 0.0);
+    // Within 1e-3, as the second row is turned by half a turn, and its balls begin at other azimuths.
     assert!(half.norm() < 1e-3 * load.norm() && apart.abs() > 0.1 * load.norm(), "{one} {other}");
     // A thrust goes to the row that takes it, the other one is loaded less.
     let pushed = held(&system(&ALONE.replace("\"0 N\"", "\"2 kN\"")));

@@ -64,6 +64,7 @@ fn closed_form_a_cage_that_stands_lets_no_roller_pass() {
     // The cage turns by k w_i + (1 - k) w_o.
     let (stands, turns) = (swing(-3000.0 * ratio / (1.0 - ratio)), swing(3000.0));
     println!("{ratio} {stands:e} {turns:e}");
+    // What is left is that of the balls that hold the journal, which pass in both.
     assert!(stands < 0.05 * turns, "{stands:e} {turns:e}");
 }
 
@@ -95,10 +96,11 @@ fn closed_form_life_goes_by_which_ring_the_load_goes_around() {
         }
         (life, hours)
     };
-    // A row whose load goes around a ring has the mean of the power 4 there, less than that of 4.5 where it stands still.
+    // The mean over the rollers is by the power 4 on a ring that the load goes around, and by 4.5 where it stands still. Of a fifth of the rollers loaded alike
+    // the first is f^(1/4 - 1/4.5) = 4.5 % less: lives differ by its fourth power at most, 1.2.
     let (inner, outer, both) = (at(1500.0, 0.0).0, at(0.0, -1500.0).0, at(1000.0, -500.0).0);
     println!("{inner} {outer} {both}");
-    assert!(outer < inner && inner < both && both < 1.3 * inner, "{inner} {outer} {both}");
+    assert!(outer < inner && inner < both && both < 1.2 * inner, "{inner} {outer} {both}");
     // Nothing rolls where both turn alike.
     assert_eq!(at(1500.0, 1500.0).1, None);
 }

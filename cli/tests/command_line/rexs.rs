@@ -183,6 +183,11 @@ fn closed_form_tapered_bearings_of_a_file_hold_the_shaft_each_its_way() {
         "{told}"
     );
     assert!(!told.contains("Lager 6206"), "{told}");
+    // The casing's oil is theirs, too.
+    for name in ["33006", "30206"] {
+        let oil = of(name)["set"]["rollers"]["film"]["viscosity"].as_str().unwrap();
+        assert_eq!(oil, bearings[0]["set"]["film"]["viscosity"].as_str().unwrap());
+    }
     // The thrust of the teeth goes to the one that takes it; the other presses as much back as it is pushed by its own radial load.
     let found = equilibrium(&scratch, &text);
     let axial = 20.0 / (0.04 / 15_f64.to_radians().cos() / 2.0) * 15_f64.to_radians().tan();

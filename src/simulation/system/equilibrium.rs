@@ -147,25 +147,7 @@ impl MachineEquilibrium {
                     [0, 3].map(|from| vector(&link.state.force.fixed_rows::<3>(from).into_owned()));
                 let value = match link.rollers() {
                     None => json!({ "force": force, "moment": moment }),
-                    Some(rollers) => {
-                        let mut value = json!({
-                        "force": force,
-                        "moment": moment,
-                        "stiffness": rollers.stiffness.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
-                        "largest_load": rollers.largest_load,
-                        "largest_rib_load": rollers.largest_rib_load,
-                        "loaded_rollers": rollers.loaded,
-                        "peak_pressure": rollers.peak_pressure,
-                        "L10r": rollers.life,
-                        "L10r_hours": link.hours(),
-                        "equivalent_load": rollers.equivalent_load,
-                        "static_safety": rollers.static_safety,
-                        });
-                        if let Some(friction) = &rollers.friction {
-                            value["friction"] = friction_json(friction);
-                        }
-                        value
-                    }
+                    Some(rollers) => rollers_json((force, moment), rollers, link.hours()),
                 };
                 (name.clone(), value)
             });
@@ -207,6 +189,27 @@ impl MachineEquilibrium {
             }).collect::<Vec<_>>(),
         })
     }
+}
+
+/// A roller bearing with the force and the moment on its shaft, and its life \[h].
+fn rollers_json((force, moment): (Value, Value), of: &RollerOutputs, hours: Option<f64>) -> Value {
+    let mut value = json!({
+        "force": force,
+        "moment": moment,
+        "stiffness": of.stiffness.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
+        "largest_load": of.largest_load,
+        "largest_rib_load": of.largest_rib_load,
+        "loaded_rollers": of.loaded,
+        "peak_pressure": of.peak_pressure,
+        "L10r": of.life,
+        "L10r_hours": hours,
+        "equivalent_load": of.equivalent_load,
+        "static_safety": of.static_safety,
+    });
+    if let Some(friction) = &of.friction {
+        value["friction"] = friction_json(friction);
+    }
+    value
 }
 
 fn friction_json(of: &FrictionOutputs) -> Value {

@@ -25,7 +25,8 @@ const TYPICAL_STIFFNESS: f64 = 1e7;
 /// less.
 const TOLERANCE: f64 = 1e-10;
 const ROUNDED: f64 = 1e-6;
-/// [-] imbalance below which a step must lower it.
+/// [-] imbalance over the forces at work below which a step must lower it. Above, it is enough that forces do work in the step: those of bearings are
+/// right to some 1e-10, so that the sign of that work holds. Parts that hang in their play come there on steps that raise the imbalance.
 const NEAR: f64 = 1e-7;
 /// [-] longest step over the smallest ball diameter.
 const LONGEST_STEP: f64 = 0.01;
