@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use roulement::catalogue::{
-    Bearing, Cage, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, Shelf, rollers_of, table,
+    Bearing, Cage, CatalogueError, Clearance, Request, STEEL_OF_ISO_76, Shelf, rollers_of, rows_of, table,
 };
 use roulement::effects::rating::line_contact::Ratings;
 use roulement::effects::rating::standard::Geometry;
@@ -799,4 +799,29 @@ fn regression_table_of_the_document() {
     let header =
         "series | bearings | bores [mm] | C of the first candidate | its C0 | f_0 | mass, without the cage";
     tables::compare("docs/catalogue.md", "catalogue", header, &rows);
+}
+
+/// Sizes of self-aligning bearings with their widths \[mm].
+const SELF_ALIGNING: &str = include_str!("../src/catalogue/self_aligning.csv");
+
+#[test]
+fn consistency_self_aligning_bearings_are_as_wide_as_their_load_ratings_and_factors_say() {
+    // C, C0 and e of the table give balls, their diameter and the distance of the rows; the width is none of their data.
+    let mut sizes = 0;
+    for line in SELF_ALIGNING.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let width = 1e-3 * cells[3].parse::<f64>().unwrap();
+        let rows = rows_of(cells[0]).unwrap().unwrap();
+        let scene = Scene::parse(&rows.scene).unwrap_or_else(|why| panic!("{line}: {why}"));
+        let (ball, pitch) = (scene.bearing.ball_diameter.0, scene.bearing.pitch_diameter.0);
+        let room = (rows.distance + ball) / width;
+        assert!((0.92..1.07).contains(&room), "{line}: {room}");
+        let filled = scene.bearing.balls as f64 * ball / (std::f64::consts::PI * pitch);
+        assert!((0.6..0.9).contains(&filled), "{line}: {filled}");
+        sizes += 1;
+    }
+    assert_eq!(sizes, 48);
+    let why = rows_of("1290").unwrap().unwrap_err().to_string();
+    assert!(why.contains("1290 is a self-aligning ball bearing of a size that the table lacks"), "{why}");
+    assert!(rows_of("6206").is_none());
 }

@@ -13,6 +13,7 @@ pub mod exact;
 pub mod field;
 pub mod film;
 pub mod fits;
+pub mod in_machine;
 pub mod kinds;
 pub mod measure;
 pub mod modes;

@@ -13,6 +13,7 @@
 # The program gets SIGTERM a minute before its time is over. It keeps what is done, and ends with 130.
 #SBATCH --signal=TERM@60
 #SBATCH --requeue
+#SBATCH --open-mode=append
 #SBATCH --output=sweep-%A-%a.log
 set -euo pipefail
 

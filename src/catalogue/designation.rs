@@ -118,6 +118,7 @@ const KINDS: [(&str, &[&str]); 4] = [
 
 const TAPERED: &str = "a tapered roller bearing";
 const DOUBLE_ROW: &str = "a double-row angular contact ball bearing";
+const SELF_ALIGNING: &str = "a self-aligning ball bearing";
 
 /// Other kinds of bearings by how many digits their numbers have, and what these begin with.
 #[rustfmt::skip]
@@ -127,11 +128,11 @@ const SERIES: [(&str, usize, &[&str]); 10] = [
     ("a thrust ball bearing", 5, &["510", "522", "523", "524", "532", "533", "534"]),
     ("a thrust cylindrical roller bearing", 5, &["811", "812", "893", "894"]),
     ("a spherical roller thrust bearing", 5, &["292", "293", "294"]),
-    ("a self-aligning ball bearing", 4, &["12", "13", "22", "23"]),
-    ("a self-aligning ball bearing", 5, &["112", "113"]),
+    (SELF_ALIGNING, 4, &["12", "13", "22", "23"]),
+    (SELF_ALIGNING, 5, &["112", "113"]),
     (DOUBLE_ROW, 4, &["32", "33", "52", "53"]),
     ("a double-row deep groove ball bearing", 4, &["42", "43"]),
-    ("a self-aligning ball bearing", 3, &["108", "126", "127", "129", "135"]),
+    (SELF_ALIGNING, 3, &["108", "126", "127", "129", "135"]),
 ];
 
 /// Signs between words, beside the slash.
@@ -254,6 +255,13 @@ pub(super) fn double_row(name: &str) -> Option<(String, bool)> {
     let head = words.find_map(Head::of)?;
     let is_b = head.rest.starts_with('B') || head.rest.is_empty() && words.next() == Some("B");
     (head.other_kind() == Some(DOUBLE_ROW)).then_some((head.number, is_b))
+}
+
+/// Number of a self-aligning ball bearing; none where a name is of something else.
+pub(super) fn self_aligning(name: &str) -> Option<String> {
+    let upper = name.to_ascii_uppercase();
+    let head = words_of(&upper).into_iter().find_map(Head::of)?;
+    (head.other_kind() == Some(SELF_ALIGNING)).then_some(head.number)
 }
 
 /// Series and code of the bore of a tapered roller bearing; nothing within where what follows them changes its contact angle. None where a name is of something else.

@@ -4,7 +4,7 @@
 //! single-row bearings. The table is SKF's as remembered; it was not at hand.
 
 use super::designation::double_row;
-use super::{CatalogueError, Request};
+use super::{CatalogueError, Request, self_aligning};
 use crate::schema::units::{Angle, Force, Length};
 
 /// Rows of the table, below a line of names.
@@ -22,14 +22,18 @@ pub struct DoubleRow {
     pub scene: String,
     /// \[m] distance of the rows.
     pub distance: f64,
+    /// \[N] basic dynamic load rating of both.
+    pub dynamic_load_rating: f64,
+    /// Do their contact lines meet the axis outside of the rows, and not between them?
+    pub back_to_back: bool,
 }
 
-/// The rows of a designation; none where it is no double-row angular contact bearing.
+/// The rows of a designation; none where it is no double-row ball bearing.
 ///
 /// # Errors
 /// If its size is not known.
 pub fn rows_of(designation: &str) -> Option<Result<DoubleRow, CatalogueError>> {
-    let (number, is_b) = double_row(designation)?;
+    let Some((number, is_b)) = double_row(designation) else { return self_aligning::rows_of(designation) };
     Some(found(designation, &number, if is_b { ANGLE_OF_B } else { ANGLE }))
 }
 
@@ -53,5 +57,10 @@ fn found(designation: &str, number: &str, angle: f64) -> Result<DoubleRow, Catal
         contact_angle: Some(Angle(angle.to_radians())),
         ..Request::default()
     };
-    Ok(DoubleRow { scene: row.bearing()?.scene(1)?, distance: 1e-3 * DISTANCE * width })
+    Ok(DoubleRow {
+        scene: row.bearing()?.scene(1)?,
+        distance: 1e-3 * DISTANCE * width,
+        dynamic_load_rating: 1e3 * dynamic,
+        back_to_back: true,
+    })
 }

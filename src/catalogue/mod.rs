@@ -30,6 +30,7 @@ mod estimate;
 mod request;
 mod rings;
 mod rollers;
+mod self_aligning;
 mod shelf;
 mod table;
 mod text;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::system::SystemScene;
+use super::system::{SystemScene, linked};
 use super::{Scene, SceneError, Solver};
 use crate::schema::{DutySection, PhaseSection, regular};
 
@@ -181,12 +181,31 @@ impl MachineScene {
         scene
     }
 
+    /// Changes all settings of the integration.
+    pub fn change_solver(&mut self, change: impl Fn(&mut Solver)) {
+        match self {
+            Self::Shaft(scene) if scene.bearings.is_empty() => change(&mut scene.of_links),
+            _ => self.change(|scene| change(&mut scene.solver)),
+        }
+    }
+
+    /// Machine with changed settings of the integration.
+    #[must_use]
+    pub fn with_solver(&self, change: impl Fn(&mut Solver)) -> Self {
+        let mut scene = self.clone();
+        scene.change_solver(change);
+        scene
+    }
+
     /// Checks every value against its range.
     ///
     /// # Errors
     /// See [`Scene::check`].
     pub fn check(&self) -> Result<(), SceneError> {
-        self.bearings().into_iter().try_for_each(|(_, scene)| scene.check())
+        match self {
+            Self::Shaft(scene) if scene.bearings.is_empty() => linked::check(&scene.of_links),
+            _ => self.bearings().into_iter().try_for_each(|(_, scene)| scene.check()),
+        }
     }
 }
 

@@ -7,6 +7,8 @@ use crate::schema::numbers::{FRICTION, Number, POISSON_RATIO, Parameter, Place, 
 
 const DENSITY: Range = Range::closed(1.0, 1e5, "kg/m3");
 const CONFORMITY: Range = Range::above(0.5, 1.0, "");
+/// To a sphere about the axis, of the largest pitch diameter that balls have ([`super::validate`]).
+const OUTER_CONFORMITY: Range = Range::above(0.5, 1e3, "");
 const MASS: Range = Range::above(0.0, 1e5, "kg");
 const INERTIA: Range = Range::above(0.0, 1e5, "kg m2");
 const TILT: Range = Range::closed(-0.2, 0.2, "rad");
@@ -35,7 +37,7 @@ static BEARING: [Number<Scene>; 17] = [
         |s| Place::Value(s.bearing.diametral_clearance.as_mut().map(|clearance| &mut clearance.0))),
     Number::fixed("bearing.inner_conformity", CONFORMITY, "inner groove radius over ball diameter",
         |s| Place::Value(Some(&mut s.bearing.inner_conformity))),
-    Number::fixed("bearing.outer_conformity", CONFORMITY, "outer groove radius over ball diameter",
+    Number::fixed("bearing.outer_conformity", OUTER_CONFORMITY, "outer groove radius over ball diameter",
         |s| Place::Value(Some(&mut s.bearing.outer_conformity))),
     Number::fixed("bearing.first_ball_azimuth", Range::closed(-7.0, 7.0, "rad"), "azimuth of ball 1, from +y towards +z",
         |s| Place::Value(Some(&mut s.bearing.first_ball_azimuth.0))),

@@ -62,6 +62,11 @@ fn bearing(scene: &Scene) -> Result<(), SceneError> {
             return Err(SceneError::conflict("bearing", why));
         }
     }
+    let cosine = bearing.contact_angle.map_or(1.0, |angle| angle.0.cos().max(1e-3));
+    let sphere = 0.5 + 0.5 * pitch / (ball * cosine);
+    // Its last digits are those of who writes it.
+    let most = sphere.max(1.0) * (1.0 + 1e-9);
+    Range::above(0.5, most, "").check("bearing.outer_conformity", bearing.outer_conformity)?;
     // Without load the orbit of the balls is the pitch circle, with a contact angle or a clearance.
     let (balls, fit) = (bearing.balls, BearingSection::most_balls(ball, pitch));
     if balls > fit {

@@ -70,7 +70,7 @@ impl Together<'_> {
     /// step, and the end.
     pub fn stops(&self, (scripts, played): (&[Script], &Played), end: f64) -> Vec<f64> {
         let from = self.time();
-        let least = self.bearings[0].model.solver.min_step.0;
+        let least = self.solver().min_step.0;
         let each = scripts.iter().zip(&*self.bearings);
         let mut knots: Vec<f64> =
             each.flat_map(|(script, bearing)| script.knots(&bearing.scene, from, end)).collect();
@@ -100,7 +100,7 @@ impl Together<'_> {
     ) -> Result<(), Stopped> {
         loop {
             let time = self.time();
-            let mut control = self.bearings[0].state.control;
+            let mut control = self.control();
             let of_structures = self.structures.as_ref().and_then(|all| all.shortest_period(played, time));
             for (bearing, script) in self.bearings.iter().zip(scripts) {
                 let own = script.shortest_period(&bearing.scene, time);
@@ -125,7 +125,7 @@ impl Together<'_> {
                 (self.imposed(scripts, &loads, time), loads)
             };
             let (boundaries, loads) = at(next);
-            let places = self.bearings[0].model.solver.method.places().iter();
+            let places = self.solver().method.places().iter();
             let stages = places.map(|place| at(time + place * h));
             let stages: Vec<_> =
                 stages.map(|(boundaries, loads)| StageBounds { boundaries, loads }).collect();
@@ -139,19 +139,21 @@ impl Together<'_> {
                     }
                     if let Some(structures) = &mut self.structures {
                         structures.reach(ends, h);
+                        structures.pace.time = next;
+                        structures.pace.statistics.steps += 1;
                     }
                     self.rest_elements(&boundaries, h);
-                    self.bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
+                    self.set_control(control);
                     return self.check_step(&boundaries);
                 }
                 Err((index, failure)) => {
-                    self.bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
+                    self.set_control(control);
                     if !control.above_minimum() {
                         let stepped = self.bearings.iter().enumerate();
                         let mut stepped = stepped.filter(|(_, bearing)| !bearing.model.without_states);
                         return Err(match stepped.nth(index) {
                             Some((index, bearing)) => (index, bearing.too_small(failure, &boundaries[index])),
-                            None => (0, self.bearings[0].too_small_for_structures(failure)),
+                            None => (0, self.too_small_for_structures(failure)),
                         });
                     }
                 }
@@ -166,7 +168,7 @@ impl Together<'_> {
         step: (f64, &[StageBounds]),
         control: &mut StepControl,
     ) -> Result<Vec<StructureState>, (usize, StepFailure)> {
-        let mut buffers = std::mem::take(&mut self.bearings[0].buffers);
+        let mut buffers = std::mem::take(self.buffers());
         let structures = self.structures.as_deref();
         let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
         let elements = structures.map_or(vec![], |all| all.element_steps(self.bearings, boundaries, step.0));
@@ -181,7 +183,10 @@ impl Together<'_> {
         let tried = try_step(&mut parts, &steps, joined, step, control, &mut buffers);
         let without_states = self.bearings.iter_mut().filter(|bearing| bearing.model.without_states);
         without_states.for_each(|bearing| buffers.count(&mut bearing.state.statistics));
-        self.bearings[0].buffers = buffers;
+        if let Some(structures) = &mut self.structures {
+            buffers.count(&mut structures.pace.statistics);
+        }
+        *self.buffers() = buffers;
         tried
     }
 
@@ -194,8 +199,8 @@ impl Together<'_> {
         perturbed: &mut [Together<'_>],
         aside: &mut Vec<Workspace>,
     ) -> Result<(), Stopped> {
-        let time = start[0].time;
-        if self.bearings[0].model.solver.method != Method::Hht {
+        let time = self.time();
+        if self.solver().method != Method::Hht {
             return Err((0, SimulationError::NoDerivatives));
         }
         for (start, bearing) in start.iter_mut().zip(&*self.bearings) {
@@ -240,19 +245,31 @@ impl Together<'_> {
             },
         );
         let structures = self.structures.as_deref();
+        let buffers = structures.map_or(&self.bearings[0].buffers, |all| &all.buffers);
         let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
         let elements = structures.map_or(vec![], |all| all.element_steps(self.bearings, boundaries, h));
         let joined = structures.map_or(Joined::default(), |all| all.joined(&elements));
-        let accepted = (h, &self.bearings[0].buffers.unknowns[..]);
+        let accepted = (h, &buffers.unknowns[..]);
         let ends = advance_perturbed(&bearings, &steps, joined, accepted, parts, aside)
             .ok_or((0, SimulationError::Singular(time)))?;
         for ((beside, ends), (boundaries, _)) in perturbed.iter_mut().zip(ends).zip(&imposed) {
             if let Some(structures) = &mut beside.structures {
                 structures.reach(ends, h);
+                structures.pace.time = next;
             }
             beside.rest_elements(boundaries, h);
         }
         Ok(())
+    }
+
+    /// The step that was tried last by a machine all of whose bearings are without states failed, and cannot be any smaller.
+    fn too_small_for_structures(&self, failure: StepFailure) -> SimulationError {
+        let cause = match failure {
+            StepFailure::Newton(..) => "Newton's method does not converge",
+            StepFailure::Error(_) => "the local error stays above solver.tolerance",
+        };
+        let (time, min_step) = (self.time(), self.solver().min_step.0);
+        SimulationError::StepOfStructuresTooSmall { time, min_step, cause }
     }
 }
 
@@ -349,16 +366,6 @@ impl Simulation {
                 script_motion(&self.scene, race, time, &now, input);
             }
         }
-    }
-
-    /// The same of a machine all of whose bearings are without states.
-    fn too_small_for_structures(&self, failure: StepFailure) -> SimulationError {
-        let cause = match failure {
-            StepFailure::Newton(..) => "Newton's method does not converge",
-            StepFailure::Error(_) => "the local error stays above solver.tolerance",
-        };
-        let (time, min_step) = (self.state.time, self.model.solver.min_step.0);
-        SimulationError::StepOfStructuresTooSmall { time, min_step, cause }
     }
 
     /// The step that was tried last failed, and cannot be any smaller.

@@ -94,7 +94,7 @@ impl Scripted for Simulation {
 impl Together<'_> {
     /// Is every point an equilibrium?
     pub(super) fn is_quasi_static(&self) -> bool {
-        self.bearings[0].model.solver.level == Level::Equilibrium
+        self.solver().level == Level::Equilibrium
     }
 
     pub(super) fn begin_course(&mut self, end: f64, played: Played) -> Course {
@@ -109,7 +109,7 @@ impl Together<'_> {
         let time = self.time();
         let Some(stop) = course.stop_after(time) else { return Ok(()) };
         self.set_bearing_inputs(course);
-        let longest = self.bearings[0].state.control.longest();
+        let longest = self.control().longest();
         course.start = (row < time + longest).then(|| self.moment());
         self.step_towards((&course.scripts, &course.played), stop, &mut [], &mut vec![])?;
         self.show(course);
@@ -150,6 +150,7 @@ impl Together<'_> {
         drop((stepped, steps, elements));
         if let Some(structures) = &mut self.structures {
             structures.reach(states, spans.0);
+            structures.pace.time = time;
         }
         self.rest_elements(&boundaries, spans.0);
         let mut seen = seen.into_iter();
@@ -169,7 +170,8 @@ impl Together<'_> {
 
     pub(super) fn look_up(&mut self, course: &mut Course) {
         let time = self.time();
-        let Some(Moment { bearings, structures: states, links, elements, .. }) = course.end.take() else {
+        let Some(Moment { time: ended, bearings, structures: states, links, elements }) = course.end.take()
+        else {
             self.bearings.iter_mut().for_each(Simulation::begin_report);
             return;
         };
@@ -180,6 +182,7 @@ impl Together<'_> {
         if let Some(structures) = &mut self.structures {
             (structures.states, structures.link_states) = (states, links);
             structures.element_states = elements;
+            structures.pace.time = ended;
         }
         self.show(course);
     }

@@ -87,10 +87,7 @@ impl Machine {
     pub fn tune(&mut self, scene: &MachineScene) {
         match (self, scene) {
             (Self::Bearing(bearing), MachineScene::Bearing(scene)) => bearing.tune(scene),
-            (Self::Shaft(system), MachineScene::Shaft(scene)) => {
-                let scenes: Vec<_> = scene.bearings.iter().map(|mounted| mounted.scene.clone()).collect();
-                system.tune(&scenes);
-            }
+            (Self::Shaft(system), MachineScene::Shaft(scene)) => system.tune(scene),
             _ => debug_assert!(false, "a scene of another machine"),
         }
     }

@@ -9,6 +9,7 @@ use super::system::{Played, System, SystemError, script_changes_within, shaft_fo
 use super::together::{Stopped, Together};
 use super::{Simulation, SimulationError};
 use crate::model::state::Statistics;
+use crate::numerics::step_control::StepControl;
 use crate::scene::machine::MachineScene;
 
 /// Why a machine could not start or go on.
@@ -81,7 +82,15 @@ impl Machine {
             polynomial_failures: all.polynomial_failures + one.polynomial_failures,
             ..all
         };
-        each.reduce(join).unwrap_or_default()
+        each.reduce(join).or(self.shaft().map(|system| *system.statistics())).unwrap_or_default()
+    }
+
+    /// Control of the step size.
+    pub fn control(&self) -> &StepControl {
+        match self {
+            Self::Bearing(bearing) => &bearing.state().control,
+            Self::Shaft(system) => system.control(),
+        }
     }
 
     /// Does its script come to other values within a span \[s] of time?

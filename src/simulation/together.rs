@@ -8,15 +8,17 @@ use super::{Simulation, SimulationError};
 use crate::dynamics::system::{StepBuffers, StructureLoad};
 use crate::dynamics::{Boundary, Workspace};
 use crate::model::bodies::Race;
+use crate::numerics::step_control::StepControl;
 use crate::numerics::tilt;
 use crate::scene::Groups;
+use crate::schema::Solver;
 
 /// Which bearing could not go on, and why.
 pub type Stopped = (usize, SimulationError);
 
 /// Bearings that take their steps together. All have the same time and the same step control.
 pub struct Together<'a> {
-    /// One at least.
+    /// One, or those of the structures.
     pub(super) bearings: &'a mut [Simulation],
     /// Structures that carry their races; nothing where a bearing is alone.
     pub(super) structures: Option<&'a mut Structures>,
@@ -25,7 +27,42 @@ pub struct Together<'a> {
 impl Together<'_> {
     /// \[s] time.
     pub fn time(&self) -> f64 {
-        self.bearings[0].state.time
+        match &self.structures {
+            Some(structures) => structures.pace.time,
+            None => self.bearings[0].state.time,
+        }
+    }
+
+    /// Settings of the steps.
+    pub fn solver(&self) -> &Solver {
+        match &self.structures {
+            Some(structures) => &structures.solver,
+            None => &self.bearings[0].model.solver,
+        }
+    }
+
+    /// Control of the step size.
+    pub fn control(&self) -> StepControl {
+        match &self.structures {
+            Some(structures) => structures.pace.control,
+            None => self.bearings[0].state.control,
+        }
+    }
+
+    /// Goes on with a control of the step size.
+    pub fn set_control(&mut self, control: StepControl) {
+        self.bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
+        if let Some(structures) = &mut self.structures {
+            structures.pace.control = control;
+        }
+    }
+
+    /// Buffers of the steps.
+    pub fn buffers(&mut self) -> &mut StepBuffers {
+        match &mut self.structures {
+            Some(structures) => &mut structures.buffers,
+            None => &mut self.bearings[0].buffers,
+        }
     }
 
     /// Begins a communication step to a time \[s]: scripts of the bearings, and paths to the inputs that were set.

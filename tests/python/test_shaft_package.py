@@ -214,3 +214,56 @@ def test_a_motion_that_is_set_is_that_of_a_table(tmp_path):
         slave.fmu.terminate()
         slave.fmu.freeInstance()
     assert abs(wanted["mesh.force.y"][-1]) > 10
+
+
+ROLLERS = """
+[shaft]
+speed = "1500 rpm"
+mass = "2 kg"
+polar_inertia = "1e-3 kg m^2"
+transverse_inertia = "3e-3 kg m^2"
+
+[[shaft.load]]
+name = "mesh"
+position = 0
+force = ["400 N", "3 kN", 0]
+
+[[bearing]]
+name = "left"
+catalogue = "30206"
+mounting = { position = "-40 mm" }
+
+[[bearing]]
+name = "right"
+catalogue = "30206"
+mounting = { position = "40 mm", direction = "-x" }
+
+[load]
+duration = "1 ms"
+output_interval = "100 us"
+"""
+
+
+def test_a_package_without_balls_steps_goes_back_and_offers_its_steps(tmp_path):
+    package = build(ROLLERS, tmp_path, "rollers")
+    assert not validate_fmu(package)
+    names = [variable.name for variable in read_model_description(package).modelVariables]
+    assert {"solver.tolerance", "left.force.y", "right.force.x"} <= set(names)
+    unit = Slave(package, tmp_path / "unpacked").start()
+
+    def five_steps(begin):
+        for row in range(5):
+            unit.fmu.doStep(currentCommunicationPoint=begin + row * 1e-4, communicationStepSize=1e-4)
+        return unit.get("left.force.x", "left.force.y", "right.force.y")
+
+    five_steps(0.0)
+    unit.set(solver__tolerance=1e-9)
+    state = unit.fmu.getFMUState()
+    ends = []
+    for _ in range(2):
+        unit.fmu.setFMUState(state)
+        ends.append(five_steps(5e-4))
+    unit.fmu.freeFMUState(state)
+    unit.close()
+    assert ends[0] == ends[1]
+    assert ends[0][1] + ends[0][2] == pytest.approx(-3000, rel=0.05)

@@ -25,8 +25,10 @@ mod quasi_static;
 mod reference;
 mod roller_friction;
 mod rollers;
+mod rollers_alone;
 mod rollers_between;
 mod seats;
+mod self_aligning;
 mod several;
 #[path = "../scene/reference/sources.rs"]
 #[allow(dead_code)]

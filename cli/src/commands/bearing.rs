@@ -8,6 +8,7 @@ use clap::Args;
 use roulement::catalogue::{Bearing, Request, SOURCE, Shelf, table};
 
 use roulement_cli::doubt::doubt;
+use roulement_cli::in_machine::machine_of;
 use roulement_cli::sweep::all::threads;
 use roulement_cli::sweep::setting::Setting;
 
@@ -96,6 +97,40 @@ impl Options {
         Ok(Request::parse(&text.to_string())?)
     }
 
+    /// The machine of a bearing that a machine alone has, if it is one and not on the shelf.
+    fn in_machine(&self, shelf: &Shelf) -> Option<Result<String, Box<dyn Error>>> {
+        let name = self.designation.join(" ");
+        if shelf.names().any(|of_shelf| of_shelf == name) {
+            return None;
+        }
+        let machine = machine_of(&name)?;
+        let Self { bore, outside, width, dynamic_load_rating, static_load_rating, .. } = self;
+        let Self { contact_angle, clearance, cage, shaft_fit, housing_fit, ring_class, .. } = self;
+        let given = [
+            ("--bore", bore),
+            ("--outside", outside),
+            ("--width", width),
+            ("--dynamic-load-rating", dynamic_load_rating),
+            ("--static-load-rating", static_load_rating),
+            ("--contact-angle", contact_angle),
+            ("--clearance", clearance),
+            ("--cage", cage),
+            ("--shaft-fit", shaft_fit),
+            ("--housing-fit", housing_fit),
+            ("--ring-class", ring_class),
+        ];
+        let given = given.into_iter().find_map(|(option, value)| value.is_some().then_some(option));
+        let other =
+            (self.candidates).then_some("--candidates").or((self.candidate != 1).then_some("--candidate"));
+        Some(match given.or(other) {
+            Some(option) => Err(format!(
+                "{option} is for a bearing of balls in one row; {name} is written as a machine, whose keys can be changed there"
+            )
+            .into()),
+            None => machine.map_err(Into::into),
+        })
+    }
+
     /// Keys of the seats that are asked for, with their values, those of a section behind one another.
     fn fits(&self, bearing: &Bearing) -> Vec<(String, String)> {
         let metres = |length: f64| toml::Value::Float(length).to_string();
@@ -152,6 +187,9 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     if options.list {
         return Ok(say(&list(&shelf))?);
     }
+    if let Some(machine) = options.in_machine(&shelf) {
+        return write(&options.output, machine?);
+    }
     let bearing = options.request()?.of_shelf(&shelf)?;
     if options.candidates {
         let given = options.set.iter().map(|given| setting(given)).collect::<Result<Vec<_>, _>>()?;
@@ -160,7 +198,12 @@ pub fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         return Ok(say(&format!("{}\n{}", candidates(&bearing)?, spread.to_text()))?);
     }
     let scene = with_fits(bearing.scene(options.candidate)?, &options.fits(&bearing))?;
-    match &options.output {
+    write(&options.output, scene)
+}
+
+/// Writes a scene to a file, or says it.
+fn write(output: &Option<PathBuf>, scene: String) -> Result<(), Box<dyn Error>> {
+    match output {
         Some(path) => {
             std::fs::write(path, scene).map_err(|why| format!("cannot write {}: {why}", path.display()))?;
             say(&format!("{}\n", path.display()))?;

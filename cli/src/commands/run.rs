@@ -67,12 +67,12 @@ pub fn run(options: Options) -> Result<ExitCode, Box<dyn Error>> {
         options;
     let mut scene = load(&scene)?;
     if let Some(Some(error)) = error {
-        scene.change(|scene| scene.solver.goal = Some(ErrorGoal { error, of: ErrorOf::All }));
+        scene.change_solver(|solver| solver.goal = Some(ErrorGoal { error, of: ErrorOf::All }));
         scene.check()?;
     }
     if means_only {
-        scene.change(|scene| {
-            scene.solver.goal.iter_mut().for_each(|goal| goal.of = ErrorOf::Means);
+        scene.change_solver(|solver| {
+            solver.goal.iter_mut().for_each(|goal| goal.of = ErrorOf::Means);
         });
     }
     let place = Place {

@@ -130,8 +130,7 @@ impl Setting {
 
     /// The scene at a fixed step \[s]: error control is opened so far that only Newton's method could ask for less.
     pub fn fixed_step(scene: &MachineScene, step: f64) -> Self {
-        let scene = scene.with(|scene| {
-            let solver = &mut scene.solver;
+        let scene = scene.with_solver(|solver| {
             (solver.initial_step, solver.max_step) = (Time(step), Time(step));
             solver.min_step = Time(solver.min_step.0.min(step));
             solver.tolerance = OPEN_TOLERANCE;

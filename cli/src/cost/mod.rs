@@ -179,6 +179,11 @@ pub enum StudyError {
     /// It cannot start or go on.
     #[error(transparent)]
     Run(#[from] MachineError),
+    /// There is nothing that settings trade.
+    #[error(
+        "this machine has no bearings of balls: what settings cost is compared by these; `roulement run --error` measures the error of a run"
+    )]
+    NoBalls,
     /// It was ended from outside.
     #[error("interrupted")]
     Interrupted,
@@ -228,6 +233,9 @@ pub fn study_of(
     choice: &Choice,
     progress: &ProgressBar,
 ) -> Result<SceneStudy, StudyError> {
+    if scene.bearings().is_empty() {
+        return Err(StudyError::NoBalls);
+    }
     let duration = scene.duration();
     let window_start = WINDOW_START * duration;
     let [fine, coarse] = levers::reference_steps(scene);
@@ -244,8 +252,7 @@ pub fn study_of(
     if has_model {
         let richest = Setting::creep(scene, CreepModel::RICHEST);
         let mut half = richest.clone();
-        half.scene.change(|scene| {
-            let solver = &mut scene.solver;
+        half.scene.change_solver(|solver| {
             (solver.max_step, solver.initial_step) =
                 (Time(0.5 * solver.max_step.0), Time(0.5 * solver.initial_step.0));
         });

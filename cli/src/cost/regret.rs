@@ -143,9 +143,9 @@ pub fn played(scene: &MachineScene, interrupted: &AtomicBool) -> Result<(Run, u6
 
 /// A scene with this many times the tolerance, all motion followed.
 fn with_tolerance(scene: &MachineScene, factor: f64) -> MachineScene {
-    scene.with(|scene| {
-        scene.solver.tolerance *= factor;
-        scene.solver.unresolved = 0.0;
+    scene.with_solver(|solver| {
+        solver.tolerance *= factor;
+        solver.unresolved = 0.0;
     })
 }
 
@@ -162,7 +162,7 @@ pub fn regret(
     let steps = usual_settings(scene);
     let usual = &steps[0].scene;
     let reference = with_tolerance(usual, 2.0)
-        .with(|scene| scene.solver = Solver { energy_error: 0.0, ..scene.solver.refined(2) });
+        .with_solver(|solver| *solver = Solver { energy_error: 0.0, ..solver.refined(2) });
     let tolerances = TOLERANCES.map(|factor| {
         let scene = with_tolerance(usual, factor);
         Setting::plain(Lever::Tolerance, format!("tolerance {:.1e}", scene.solver().tolerance), scene)

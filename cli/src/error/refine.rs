@@ -55,14 +55,14 @@ pub fn refine<P: Compared, E>(
 
 /// A scene with steps halved so often.
 pub fn finer(scene: &MachineScene, halvings: u32) -> MachineScene {
-    scene.with(|scene| scene.solver = scene.solver.refined(halvings))
+    scene.with_solver(|solver| *solver = solver.refined(halvings))
 }
 
 /// The scene of the coarser one of the last two of so many runs, with steps that differ from its own by next to nothing.
 pub fn twin_of_coarser(scene: &MachineScene, runs: u32) -> MachineScene {
     let coarser = if runs < 2 { scene.clone() } else { finer(scene, runs - 2) };
-    coarser.with(|scene| {
-        scene.solver.max_step.0 *= 1.0 + TWIN;
-        scene.solver.initial_step.0 *= 1.0 + TWIN;
+    coarser.with_solver(|solver| {
+        solver.max_step.0 *= 1.0 + TWIN;
+        solver.initial_step.0 *= 1.0 + TWIN;
     })
 }

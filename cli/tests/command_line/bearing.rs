@@ -235,3 +235,49 @@ fn fits_by_words_are_told_at_their_ends_and_their_mean() {
     assert!(!refused.status.success());
     assert!(String::from_utf8_lossy(&refused.stderr).contains("growth.shaft.fit"), "{refused:?}");
 }
+
+#[test]
+fn bearings_that_a_machine_alone_has_are_machines_that_run() {
+    let scratch = Scratch::new("in_machine");
+    let path = scratch.path("machine.toml");
+    // Load in kN: a tenth of C.
+    for (name, part, load) in [
+        ("NU 206", "diametral_clearance = ", 3.8),
+        ("30206", "contact_angle = ", 4.3),
+        ("K 30x35x27", "[bearing.rollers]", 2.6),
+        ("3206 A", "catalogue = \"3206 A\"", 3.0),
+        ("1206", "catalogue = \"1206\"", 1.6),
+    ] {
+        let output = roulement(&["bearing", name, "-o", &path]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = scratch.read("machine.toml");
+        let force = format!("force = [0, \"{} N\", 0]", 1e3 * load);
+        assert!([part, &force].iter().all(|part| text.contains(part)), "{name}: {text}");
+        let short = text.replace("duration = \"20 ms\"", "duration = \"0.5 ms\"");
+        std::fs::write(&path, short).unwrap();
+        let ran = roulement(&["run", "--json", &path, "-o", &scratch.path("run")]);
+        assert!(ran.status.success(), "{name}: {}", String::from_utf8_lossy(&ran.stderr));
+    }
+    let refused = roulement(&["bearing", "NU 206", "--clearance", "C3"]);
+    let why = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(!refused.status.success() && why.contains("--clearance") && why.contains("NU 206"), "{why}");
+    let unknown = roulement(&["bearing", "NU 2999"]);
+    assert!(!unknown.status.success() && String::from_utf8_lossy(&unknown.stderr).contains("NU 2999"));
+}
+
+#[test]
+fn a_machine_of_rollers_alone_has_its_error_measured_and_no_costs_compared() {
+    let scratch = Scratch::new("rollers_alone");
+    let path = scratch.path("machine.toml");
+    roulement(&["bearing", "NU 206", "-o", &path]);
+    let text = scratch.read("machine.toml").replace("duration = \"20 ms\"", "duration = \"2 ms\"");
+    std::fs::write(&path, text).unwrap();
+    let ran = roulement(&["run", "--error", "1e-2", "--json", &path, "-o", &scratch.path("run")]);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let cost = roulement(&["cost", &path]);
+    let why = String::from_utf8_lossy(&cost.stderr).into_owned();
+    assert!(
+        !cost.status.success() && why.contains("no bearings of balls") && !why.contains("panicked"),
+        "{why}"
+    );
+}

@@ -22,6 +22,11 @@ const SHARE_OF_LOAD: f64 = 1e-9;
 /// \[N] residual that is small enough for any bearing.
 const FORCE_TOLERANCE: f64 = 1e-6;
 
+/// \[N] residual that is small enough where the largest load \[N] is this.
+pub fn residual_of(largest: f64) -> f64 {
+    FORCE_TOLERANCE.max(SHARE_OF_LOAD * largest)
+}
+
 /// A bearing without states, between its seats.
 #[derive(Clone, Debug)]
 pub struct ElementJoint {
@@ -125,7 +130,7 @@ impl<'a> ElementStep<'a> {
 
     /// \[N] residual that is small enough.
     pub fn tolerance(&self) -> f64 {
-        FORCE_TOLERANCE.max(SHARE_OF_LOAD * self.start.largest)
+        residual_of(self.start.largest)
     }
 
     /// The races where the structures are.

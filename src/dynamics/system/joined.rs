@@ -37,7 +37,7 @@ impl SystemStep<'_> {
     /// Residuals of the structures under what their bearings do; the largest over the tolerance.
     pub(super) fn assemble_structures(&mut self) -> f64 {
         self.trials.iter_mut().for_each(StructureTrial::clear);
-        let mut tolerance = f64::INFINITY;
+        let mut tolerance = self.joined.of_links.map_or(f64::INFINITY, |may_leave| may_leave.force);
         for Joint { bearing, race, structure, seat } in self.joined.joints {
             let step = &self.bearings[*bearing];
             tolerance = tolerance.min(step.force_tolerance);

@@ -23,7 +23,7 @@ use border::Border;
 pub use border::KeptBorder;
 pub use dense::{Stepped, within};
 pub use sensitivity::{Perturbed, Started, advance_perturbed};
-pub use step::{Joined, Joint, StructureStep, SystemStep};
+pub use step::{Joined, Joint, MayLeave, StructureStep, SystemStep};
 pub use structure::{Seat, StructureLoad, StructureTrial};
 
 /// A bearing of a system in a step.

@@ -51,7 +51,7 @@ pub fn advance_perturbed<'a>(
     for (own, bearing) in aside.iter_mut().zip(bearings) {
         own.list_those_of(bearing.accepted);
     }
-    let step = scheme(bearings.iter().map(|of| (of.model, of.start)), h);
+    let step = scheme(bearings.iter().map(|of| (of.model, of.start)), joined, h);
     let steps = bearings.iter().zip(aside.iter_mut());
     let steps: Vec<_> = steps
         .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, step, workspace))

@@ -24,14 +24,17 @@ use crate::numerics::esdirk;
 use crate::numerics::hht::HhtStep;
 use crate::numerics::newton::{Equations, NewtonFailure, REFACTOR_CONTRACTION};
 use crate::numerics::size::larger;
+use crate::schema::Solver;
 
-/// [-] damping parameter of a system all of whose bearings are without states, where they do not say so.
-const DEFAULT_ALPHA: f64 = 0.05;
-
-/// The scheme of a step of `h` \[s] of bearings in these states: that of their scenes, with more damping where all of them stand.
-pub(super) fn scheme<'a>(bearings: impl Iterator<Item = (&'a Model, &'a State)> + Clone, h: f64) -> HhtStep {
+/// The scheme of a step of `h` \[s] of bearings in these states: that of their scenes, with more damping where all of them stand. Where none has states
+/// it is that of the machine.
+pub(super) fn scheme<'a>(
+    bearings: impl Iterator<Item = (&'a Model, &'a State)> + Clone,
+    joined: Joined<'_>,
+    h: f64,
+) -> HhtStep {
     let Some((first, _)) = bearings.clone().next() else {
-        return HhtStep::new(DEFAULT_ALPHA, h);
+        return HhtStep::new(joined.solver.map_or(Solver::default().alpha_f, |solver| solver.alpha_f), h);
     };
     let own = first.solver.alpha_f;
     let mut all = bearings;
@@ -63,6 +66,19 @@ pub struct Joined<'a> {
     pub link_states: &'a [LinkState],
     /// Bearings without states.
     pub elements: &'a [ElementStep<'a>],
+    /// Settings of the machine, if it is one.
+    pub solver: Option<&'a Solver>,
+    /// What a step may leave, where links are all that there is.
+    pub of_links: Option<MayLeave>,
+}
+
+/// What a step may leave.
+#[derive(Clone, Copy, Debug)]
+pub struct MayLeave {
+    /// \[N] residual.
+    pub force: f64,
+    /// Local error.
+    pub error: Allowed,
 }
 
 /// A structure at the start of a step, and what acts on it.
@@ -124,7 +140,7 @@ impl<'a> SystemStep<'a> {
     ) -> Self {
         let step = match stage {
             Some(_) => HhtStep::backward_euler(esdirk::DIAGONAL * h),
-            None => scheme(parts.iter().map(|part| (part.model, &*part.state)), h),
+            None => scheme(parts.iter().map(|part| (part.model, &*part.state)), joined, h),
         };
         let of = |(index, part): (usize, &'a mut Part<'_>)| {
             let Part { model, state, boundary, workspace } = part;
@@ -293,7 +309,9 @@ impl<'a> SystemStep<'a> {
     pub fn local_error(&self, before: &[StructureStep<'_>], (h, stages): (f64, Option<&Stages>)) -> f64 {
         let bearings = self.bearings.iter().map(BearingStep::local_error);
         let of_elements = self.joined.elements.iter().map(|element| element.allowed);
-        let allowed = self.bearings.iter().map(BearingStep::allowed).chain(of_elements).reduce(Allowed::and);
+        let of_links = self.joined.of_links.map(|may_leave| may_leave.error);
+        let all = self.bearings.iter().map(BearingStep::allowed).chain(of_elements).chain(of_links);
+        let allowed = all.reduce(Allowed::and);
         let structures = before.iter().zip(&self.trials).enumerate().map(|(index, (one, trial))| {
             let mut change = &trial.end.accelerations - &one.start.accelerations;
             one.model.held.iter().for_each(|k| change[*k] = 0.0);
@@ -311,7 +329,7 @@ impl<'a> SystemStep<'a> {
                 }
             };
             let force = || [(&one.model.mass * &change).component_div(one.scales).amax()];
-            // A system has a bearing at least.
+            // A system has a bearing at least, or links.
             allowed.map_or(0.0, |allowed| allowed.square([error * error], force).sqrt())
         });
         bearings.chain(structures).fold(0.0, larger)
@@ -397,6 +415,7 @@ impl Equations for SystemStep<'_> {
 
     fn refactor_contraction(&self) -> f64 {
         let contraction = |step: &BearingStep<'_>| step.model.solver.matrix_reuse;
-        self.bearings.iter().map(contraction).reduce(f64::min).unwrap_or(REFACTOR_CONTRACTION)
+        let of_machine = || self.joined.solver.map_or(REFACTOR_CONTRACTION, |solver| solver.matrix_reuse);
+        self.bearings.iter().map(contraction).reduce(f64::min).unwrap_or_else(of_machine)
     }
 }

@@ -241,9 +241,8 @@ impl Unit {
     pub fn next_point(&self, end: f64) -> f64 {
         let time = self.time();
         let dynamic = self.scene.solver().level == Level::Dynamic;
-        let control = self.machine.bearings().next().map(|(_, bearing)| bearing.state().control);
-        let step =
-            control.filter(|_| dynamic).map_or(f64::INFINITY, |control| control.step_within(end - time));
+        let control = self.machine.control();
+        let step = if dynamic { control.step_within(end - time) } else { f64::INFINITY };
         if step >= (end - time) * (1.0 - 1e-9) { end } else { time + step }
     }
 

@@ -8,7 +8,9 @@ use super::{MountedScene, NamedLoad, check_housing, rollers, spring};
 use crate::effects::gravity::GRAVITY;
 use crate::numerics::size::ascending;
 use crate::schema::numbers::Range;
-use crate::schema::{AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, check_duty, check_phases};
+use crate::schema::{
+    AxialSeat, Drive, Level, Mounting, SceneError, ShaftSection, Solver, check_duty, check_phases,
+};
 
 /// Checks every value against its range, and the keys against one another.
 pub fn check(written: &Written) -> Result<(), SceneError> {
@@ -36,11 +38,8 @@ pub fn check(written: &Written) -> Result<(), SceneError> {
             return of_matrices(name);
         }
     }
-    if written.bearing.iter().all(WrittenBearing::links) {
-        return Err(SceneError::conflict(
-            "bearing",
-            "a shaft needs bearings: give at least one [[bearing]] of balls that are simulated",
-        ));
+    if written.bearing.is_empty() {
+        return Err(SceneError::conflict("bearing", "a shaft needs bearings: give at least one [[bearing]]"));
     }
     if written.shaft.0.is_empty() {
         return Err(SceneError::conflict("shaft", "give at least one [[shaft]]"));
@@ -387,8 +386,12 @@ fn sections(shaft: &ShaftSection) -> Result<(), SceneError> {
 }
 
 /// All bearings of a system are integrated together.
-pub fn solvers(bearings: &[MountedScene], shafts: &[ShaftSection]) -> Result<(), SceneError> {
-    let first = &bearings[0].scene.solver;
+pub fn solvers(
+    bearings: &[MountedScene],
+    of_links: &Solver,
+    shafts: &[ShaftSection],
+) -> Result<(), SceneError> {
+    let first = bearings.first().map_or(of_links, |bearing| &bearing.scene.solver);
     if first.level == Level::Equilibrium && shafts.iter().any(|shaft| shaft.speed.is_none()) {
         let why =
             "\"equilibrium\" needs a speed of the shaft: what shaft.torque does to it is a motion in time";

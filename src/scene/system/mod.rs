@@ -8,6 +8,7 @@ mod check;
 mod check_held;
 mod check_housing;
 mod check_motion;
+pub(crate) mod linked;
 pub mod mesh;
 mod numbers;
 mod planets;
@@ -51,8 +52,10 @@ pub struct SystemScene {
     pub meshes: Vec<SceneMesh>,
     /// Bearings by their stiffness or by rollers, then couplings.
     pub springs: Vec<SceneSpring>,
-    /// The bearings.
+    /// The bearings of balls.
     pub bearings: Vec<MountedScene>,
+    /// Settings of the integration, if there are none.
+    pub of_links: Solver,
     /// [m/s2] acceleration of gravity in the axes of the shaft.
     pub gravity: Components<Acceleration>,
     /// Interface of its FMU.
@@ -303,10 +306,25 @@ impl SystemScene {
         (0..self.bearings.len()).filter(move |bearing| self.housing_of(*bearing) == Some(housing))
     }
 
+    /// \[m] smallest diameter of a ball; of a roller where there are none.
+    pub fn smallest_element(&self) -> f64 {
+        let balls = self.bearings.iter().map(|bearing| bearing.scene.bearing.ball_diameter.0);
+        balls.reduce(f64::min).unwrap_or_else(|| linked::smallest_roller(&self.springs))
+    }
+
+    /// Settings of the integration, to be changed: those of a bearing by its index, or the only ones where there is none of balls.
+    pub(crate) fn solver_of(&mut self, index: usize) -> Option<&mut Solver> {
+        match self.bearings.is_empty() {
+            true => (index == 0).then_some(&mut self.of_links),
+            false => self.bearings.get_mut(index).map(|bearing| &mut bearing.scene.solver),
+        }
+    }
+
     /// Settings of the integration: those that steps of all bearings need.
     pub fn solver(&self) -> Solver {
-        let mut solver = self.bearings[0].scene.solver;
-        for bearing in &self.bearings {
+        let Some((first, others)) = self.bearings.split_first() else { return self.of_links };
+        let mut solver = first.scene.solver;
+        for bearing in others {
             let own = bearing.scene.solver;
             let smaller = |a: Time, b: Time| if b.0 < a.0 { b } else { a };
             solver.max_step = smaller(solver.max_step, own.max_step);

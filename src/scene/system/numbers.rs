@@ -129,13 +129,13 @@ static NUMBERS: [ShaftNumber; 24] = [
     }),
     number("mass", "mass of the housing", MASS, of_housings, |s, k| s.housings.get_mut(k)?.mass.as_mut().map(|mass| &mut mass.0)),
     solver("tolerance", "local error of an internal step over the ball diameter", (TOLERANCE, Variability::Tunable),
-        |s, k| s.bearings.get_mut(k).map(|bearing| &mut bearing.scene.solver.tolerance)),
+        |s, k| s.solver_of(k).map(|solver| &mut solver.tolerance)),
     solver("initial_step", "first internal step", (STEP, Variability::Fixed),
-        |s, k| s.bearings.get_mut(k).map(|bearing| &mut bearing.scene.solver.initial_step.0)),
+        |s, k| s.solver_of(k).map(|solver| &mut solver.initial_step.0)),
     solver("max_step", "largest internal step", (STEP, Variability::Fixed),
-        |s, k| s.bearings.get_mut(k).map(|bearing| &mut bearing.scene.solver.max_step.0)),
+        |s, k| s.solver_of(k).map(|solver| &mut solver.max_step.0)),
     solver("min_step", "smallest internal step; a step that needs a smaller one is not finished", (STEP, Variability::Fixed),
-        |s, k| s.bearings.get_mut(k).map(|bearing| &mut bearing.scene.solver.min_step.0)),
+        |s, k| s.solver_of(k).map(|solver| &mut solver.min_step.0)),
 ];
 
 /// A number of a part.

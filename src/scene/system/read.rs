@@ -7,14 +7,14 @@ use toml::{Table, Value};
 
 use super::bearing::{Catalogue, Shared, WrittenBearing};
 use super::source::standing_alone;
-use super::{SystemLoad, SystemScene, check, check_held, mesh, planets, rows, spring};
+use super::{SystemLoad, SystemScene, check, check_held, linked, mesh, planets, rows, spring};
 use crate::catalogue;
 use crate::effects::frame::FrameSection;
 use crate::scene::{Ranges, Scene, SceneError};
 use crate::schema::units::Acceleration;
 use crate::schema::{
     Components, CouplingSection, DutySection, HousingSection, Interface, Matrices, MeshSection, PhaseSection,
-    Shafts, explain, regular,
+    Shafts, Solver, explain, regular,
 };
 
 /// The catalogue that files are read with: the shelf beside them, then the table.
@@ -202,7 +202,11 @@ impl SystemScene {
         };
         let bearings = bearing.into_iter().map(|bearing| bearing.read(&given));
         let mut bearings = bearings.collect::<Result<Vec<_>, _>>().map_err(placed)?;
-        check::solvers(&bearings, &shafts).map_err(placed)?;
+        let of_links = match bearings.is_empty() {
+            true => linked::solver(&given.solver, &springs).map_err(placed)?,
+            false => Solver::default(),
+        };
+        check::solvers(&bearings, &of_links, &shafts).map_err(placed)?;
         check_held::held(&shafts, &bearings, &springs).map_err(placed)?;
         for mounted in &mut bearings {
             let (place, direction) = (mounted.place(&shafts), mounted.mounting.direction.sign());
@@ -221,6 +225,7 @@ impl SystemScene {
             meshes,
             springs,
             bearings,
+            of_links,
             gravity,
             frame,
             load,

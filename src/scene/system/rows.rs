@@ -38,7 +38,8 @@ fn both(bearing: &Value, catalogue: Catalogue) -> Result<Option<[Table; 2]>, Sce
         place: format!("bearing \"{name}\""),
         source: Box::new(SceneError::conflict(key, why)),
     };
-    let DoubleRow { scene, distance } = found.map_err(|why| refuse("bearing.catalogue", why.to_string()))?;
+    let DoubleRow { scene, distance, back_to_back, .. } =
+        found.map_err(|why| refuse("bearing.catalogue", why.to_string()))?;
     if mounting.axial == AxialSeat::Free {
         let why = format!(
             "{designation} has two rows, whose outer ring would slide as one; here each would slide by itself: give a single-row bearing that slides"
@@ -57,7 +58,6 @@ fn both(bearing: &Value, catalogue: Catalogue) -> Result<Option<[Table; 2]>, Sce
         let seat = own.entry("mounting").or_insert_with(|| Table::new().into());
         if let Some(seat) = seat.as_table_mut() {
             seat.insert("position".into(), (mounting.position.0 + along).into());
-            // Back to back: contact lines meet the axis outside of the rows.
             seat.insert("direction".into(), direction.into());
             if mounting.has_bore() {
                 let (offset, tilt) = mounting.bore();
@@ -70,5 +70,6 @@ fn both(bearing: &Value, catalogue: Catalogue) -> Result<Option<[Table; 2]>, Sce
         }
         own
     };
-    Ok(Some([row(1, -1.0, "+x"), row(2, 1.0, "-x")]))
+    let [first, second] = if back_to_back { ["+x", "-x"] } else { ["-x", "+x"] };
+    Ok(Some([row(1, -1.0, first), row(2, 1.0, second)]))
 }

@@ -5,7 +5,8 @@ use super::super::play::Scripted;
 use super::super::together::{Stopped, Together};
 use super::super::{Simulation, SimulationError};
 use super::inputs::{Played, ShaftInputs};
-use super::{System, SystemError};
+use super::{Structures, System, SystemError};
+use crate::dynamics::system::StepBuffers;
 
 impl System {
     /// Scripted its own steps to exactly `end` \[s] by the scripts of all bearings and the shaft.
@@ -55,7 +56,8 @@ impl System {
     /// A copy without buffers, under other inputs.
     fn beside(&self, (shaft, bearings): &(ShaftInputs, Vec<Inputs>)) -> Result<Self, SystemError> {
         let copies = self.bearings.iter().map(Simulation::beside).collect();
-        let mut system = Self { bearings: copies, structures: self.structures.clone() };
+        let structures = Structures { buffers: StepBuffers::default(), ..self.structures.clone() };
+        let mut system = Self { bearings: copies, structures };
         let fit = system.set_inputs(shaft.clone(), bearings.clone());
         fit.then_some(system).ok_or(SystemError::OtherInputs)
     }

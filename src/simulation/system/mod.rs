@@ -11,6 +11,7 @@ mod links;
 mod loads;
 mod motions;
 mod outputs;
+mod pace;
 mod quasi_static;
 mod snapshot;
 mod start;
@@ -26,8 +27,9 @@ use super::inputs::Inputs;
 pub use super::path::Motion;
 use super::{Simulation, SimulationError, follows_time};
 use crate::effects::frame::FrameSection;
+use crate::model::state::Statistics;
 use crate::model::structure::{Carrier, StructureState};
-use crate::scene::Scene;
+use crate::numerics::step_control::StepControl;
 use crate::scene::system::SystemScene;
 use crate::schema::numbers::four;
 pub use assembly::InBalance;
@@ -127,7 +129,7 @@ impl System {
 
     /// \[s] time.
     pub fn time(&self) -> f64 {
-        self.bearings[0].state.time
+        self.structures.pace.time
     }
 
     /// States of the shafts.
@@ -164,13 +166,27 @@ impl System {
         fit
     }
 
-    /// Goes on with scenes of its bearings, in their order, that differ in tunable parameters alone.
-    pub fn tune(&mut self, scenes: &[Scene]) {
-        let own = Arc::make_mut(&mut self.structures.scene).bearings.iter_mut();
-        for ((bearing, mounted), scene) in self.bearings.iter_mut().zip(own).zip(scenes) {
-            bearing.tune(scene);
-            mounted.scene = scene.clone();
+    /// Goes on with a scene that differs in tunable parameters of its bearings and steps alone.
+    pub fn tune(&mut self, scene: &SystemScene) {
+        let own = Arc::make_mut(&mut self.structures.scene);
+        own.of_links = scene.of_links;
+        for ((bearing, mounted), tuned) in
+            self.bearings.iter_mut().zip(&mut own.bearings).zip(&scene.bearings)
+        {
+            bearing.tune(&tuned.scene);
+            mounted.scene = tuned.scene.clone();
         }
+        self.structures.solver = scene.solver();
+    }
+
+    /// Work of its steps since the start, without that of contacts.
+    pub fn statistics(&self) -> &Statistics {
+        &self.structures.pace.statistics
+    }
+
+    /// Control of its steps.
+    pub fn control(&self) -> &StepControl {
+        &self.structures.pace.control
     }
 
     /// Pushes the cage of every bearing that has one ([`Simulation::push_cage`]).

@@ -4,6 +4,7 @@
 use super::super::inputs::Inputs;
 use super::super::play::Scripted;
 use super::inputs::Played;
+use super::pace::Pace;
 use super::{System, SystemError};
 use crate::model::state::State;
 
@@ -39,6 +40,7 @@ impl System {
         let spins = (0..self.structures.scene.shafts.len()).map(|shaft| given.spin(shaft, end)).collect();
         let mut next = Self::start(&self.structures.scene, end, Some((&inputs, &bearings)), Some(spins))?;
         next.structures.paths = paths;
+        next.structures.pace = Pace { time: end, ..self.structures.pace };
         for (bearing, before) in next.bearings.iter_mut().zip(&before) {
             bearing.go_on_from(before);
         }

@@ -6,6 +6,7 @@ use super::super::play::Scripted;
 use super::super::{Simulation, Snapshot};
 use super::System;
 use super::inputs::{ShaftInputs, ShaftPaths};
+use super::pace::Pace;
 use crate::dynamics::system::KeptBorder;
 use crate::dynamics::system::elements::ElementState;
 use crate::model::link::LinkState;
@@ -24,13 +25,14 @@ pub struct SystemSnapshot {
     elements: Vec<ElementState>,
     /// Matrix of steps of a machine all of whose bearings are without states, if one is kept.
     border: Option<KeptBorder>,
+    pace: Pace,
     bearings: Vec<Snapshot>,
 }
 
 impl SystemSnapshot {
     /// \[s] time.
     pub fn time(&self) -> f64 {
-        self.bearings.first().map_or(0.0, Snapshot::time)
+        self.pace.time
     }
 }
 
@@ -43,15 +45,17 @@ impl System {
             states: self.structures.states.clone(),
             links: self.structures.link_states.clone(),
             elements: self.structures.element_states.clone(),
-            border: self.bearings[0].buffers.border.kept(),
+            border: self.structures.buffers.border.kept(),
+            pace: self.structures.pace,
             bearings: self.bearings.iter().map(Simulation::snapshot).collect(),
         }
     }
 
     /// That, in the memory of an earlier one of this system.
     pub fn snapshot_into(&self, snapshot: &mut SystemSnapshot) {
-        let SystemSnapshot { inputs, paths, states, links, elements, border, bearings } = snapshot;
-        *border = self.bearings[0].buffers.border.kept();
+        let SystemSnapshot { inputs, paths, states, links, elements, border, pace, bearings } = snapshot;
+        *border = self.structures.buffers.border.kept();
+        *pace = self.structures.pace;
         inputs.clone_from(&self.structures.inputs);
         paths.clone_from(&self.structures.paths);
         states.clone_from(&self.structures.states);
@@ -83,10 +87,14 @@ impl System {
                 .iter()
                 .zip(&snapshot.states)
                 .all(|(one, state)| state.fits(one.structure.size(), one.structure.held.len()))
+            && snapshot.pace.time.is_finite()
+            && snapshot.pace.control.fits(&self.structures.pace.control)
+            && snapshot.pace.statistics.plausible()
             && snapshot.bearings.iter().all(|bearing| bearing.time() == snapshot.time());
         let rows = self.structures.carriers.iter().map(|one| one.structure.size()).sum();
-        let same = same && self.bearings[0].buffers.border.restore(snapshot.border.as_ref(), rows);
+        let same = same && self.structures.buffers.border.restore(snapshot.border.as_ref(), rows);
         if same {
+            self.structures.pace = snapshot.pace;
             self.structures.inputs.clone_from(&snapshot.inputs);
             self.structures.paths.clone_from(&snapshot.paths);
             self.structures.states.clone_from(&snapshot.states);

@@ -9,10 +9,12 @@ use super::super::{Simulation, SimulationError};
 use super::assembly::Assembly;
 use super::elements;
 use super::inputs::ShaftInputs;
+use super::pace::Pace;
 use super::{Structures, System, SystemError, SystemOutputs};
 use crate::analysis::auto;
-use crate::dynamics::system::{Joined, Joint, StructureStep, StructureTrial};
+use crate::dynamics::system::{Joined, Joint, StepBuffers, StructureStep, StructureTrial};
 use crate::model::link;
+use crate::model::state::Statistics;
 use crate::model::structure::{Carrier, Spin, StructureState};
 use crate::numerics::step_control::StepControl;
 use crate::scene::system::SystemScene;
@@ -82,8 +84,14 @@ impl System {
         let of_elements = elements::steps(&elements, &element_states, &bearings, &boundaries, 0.0);
         let link_states: Vec<_> =
             links.iter().map(|link| link.started(|structure| &states[structure])).collect();
-        let joined =
-            Joined { joints: &stepped, links: &links, link_states: &link_states, elements: &of_elements };
+        let joined = Joined {
+            joints: &stepped,
+            links: &links,
+            link_states: &link_states,
+            elements: &of_elements,
+            solver: None,
+            of_links: None,
+        };
         let of_parts: Vec<&Simulation> =
             bearings.iter().filter(|bearing| !bearing.model.without_states).collect();
         let states = started(&carriers, &steps, joined, &of_parts);
@@ -104,6 +112,9 @@ impl System {
             inputs,
             paths,
             states,
+            pace: Pace { time, control, statistics: Statistics::default() },
+            solver,
+            buffers: StepBuffers::default(),
             outputs: SystemOutputs::default(),
         };
         let mut system = Self { bearings, structures };

@@ -164,8 +164,7 @@ impl Statics<'_> {
     /// where the unbalanced forces do work in it, as the potential then falls.
     fn search(&mut self, states: &mut [StructureState]) -> Result<(), SystemError> {
         let scales = joined(self.scales.iter());
-        let smallest = |bearing: &Simulation| 2.0 * bearing.model.bearing.ball.radius;
-        let longest = LONGEST_STEP * self.bearings.iter().map(smallest).fold(f64::INFINITY, f64::min);
+        let longest = LONGEST_STEP * self.scene.smallest_element();
         let mut at = joined(states.iter().map(|state| &state.coordinates));
         let mut here = self.evaluate(states)?;
         let mut shift = 0.0;

@@ -5,14 +5,16 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
+use super::pace::Pace;
 use super::{LinkOutputs, SystemOutputs, loads};
-use crate::dynamics::Boundary;
-use crate::dynamics::system::elements::{ElementJoint, ElementState, ElementStep};
-use crate::dynamics::system::{Joined, Joint, StructureLoad, StructureStep};
+use crate::dynamics::system::elements::{ElementJoint, ElementState, ElementStep, residual_of};
+use crate::dynamics::system::{Joined, Joint, MayLeave, StepBuffers, StructureLoad, StructureStep};
+use crate::dynamics::{Allowed, Boundary};
 use crate::model::bodies::Race;
 use crate::model::link::{Link, LinkState};
 use crate::model::structure::{Carrier, StructureState, Turning};
 use crate::scene::system::SystemScene;
+use crate::schema::Solver;
 
 /// Shafts and housings in motion.
 #[derive(Clone, Debug)]
@@ -41,6 +43,12 @@ pub struct Structures {
     pub paths: ShaftPaths,
     /// State of each structure.
     pub states: Vec<StructureState>,
+    /// Their time, and that of all bearings.
+    pub pace: Pace,
+    /// Settings of their steps.
+    pub solver: Solver,
+    /// Buffers of these.
+    pub buffers: StepBuffers,
     /// Their outputs.
     pub outputs: SystemOutputs,
 }
@@ -73,7 +81,26 @@ impl Structures {
 
     /// Joints between them.
     pub fn joined<'a>(&'a self, elements: &'a [ElementStep<'a>]) -> Joined<'a> {
-        Joined { joints: &self.stepped, links: &self.links, link_states: &self.link_states, elements }
+        Joined {
+            joints: &self.stepped,
+            links: &self.links,
+            link_states: &self.link_states,
+            elements,
+            solver: Some(&self.solver),
+            of_links: self.may_leave(),
+        }
+    }
+
+    /// What a step may leave of a machine all of whose bearings are links.
+    fn may_leave(&self) -> Option<MayLeave> {
+        let Solver { tolerance, unresolved, .. } = self.solver;
+        self.scene.bearings.is_empty().then(|| {
+            let forces = self.link_states.iter().map(|link| link.force.fixed_rows::<3>(0).norm());
+            let largest = forces.fold(0.0, f64::max);
+            let unresolved = (unresolved > 0.0).then(|| self.solver.unresolved_share() * largest);
+            let error = Allowed { length: tolerance * self.scene.smallest_element(), unresolved };
+            MayLeave { force: residual_of(largest), error }
+        })
     }
 
     /// Takes the states that a step of `h` \[s] has led to.
