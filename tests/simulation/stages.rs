@@ -58,8 +58,8 @@ const CHANGING: [(&str, &str); 2] = [
 fn order_three_with_constraints_where_contacts_stay_closed() {
     let scene = scene("thrust", &CHANGING);
     let end = 8e-4;
-    let reference = after(&scene, 1e-6, end);
-    let errors = [2e-5, 1e-5, 5e-6].map(|step| distance(&after(&scene, step, end), &reference));
+    let reference = after(&scene, 5e-7, end);
+    let errors = [1e-5, 5e-6, 2.5e-6].map(|step| distance(&after(&scene, step, end), &reference));
     let orders = [0, 1].map(|k: usize| (errors[k] / errors[k + 1]).log2());
     println!("{errors:?} {orders:?}");
     assert!(orders.iter().all(|order| *order > 2.7), "{orders:?}");
@@ -68,7 +68,7 @@ fn order_three_with_constraints_where_contacts_stay_closed() {
     other.solver.method = Method::Hht;
     let of_other = [1e-5, 5e-6].map(|step| distance(&after(&other, step, end), &reference));
     println!("{of_other:?}");
-    assert!(of_other[0] > 3.0 * of_other[1] && of_other[0] > 4.0 * errors[1], "{of_other:?}");
+    assert!(of_other[0] > 3.0 * of_other[1] && of_other[0] > 4.0 * errors[0], "{of_other:?}");
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn path(scene: &Scene) -> (Vec<Vector3<f64>>, f64) {
 fn regression_less_work_or_less_error_than_the_other_method_with_a_tolerance() {
     let oil = [("film", "{ iso_vg = 68, temperature = \"70 degC\" }"), ("effects.creep", "\"kalker_table\"")];
     for (name, changes, [error, work]) in
-        [("radial", &[][..], [1.1, 0.75]), ("radial", &oil, [1.1, 0.75]), ("cage", &[], [0.7, 1.1])]
+        [("radial", &[][..], [0.3, 0.75]), ("radial", &oil, [0.3, 0.75]), ("cage", &[], [0.5, 0.85])]
     {
         let scene = scene(name, changes);
         let with = |method: Method, step: f64, tolerance: f64| {
