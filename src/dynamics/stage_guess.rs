@@ -4,7 +4,7 @@ use crate::numerics::esdirk::{PLACES, STAGES, extrapolation};
 
 /// Weights with which unknowns that are known before a stage go on to it.
 pub struct Known {
-    /// Values at the start of the last step and in its third stage.
+    /// Values at the start of the last step and in its fourth stage.
     pub old: [f64; 2],
     /// Values in the stages of this one.
     pub new: [f64; STAGES - 1],
@@ -13,23 +13,32 @@ pub struct Known {
 impl Known {
     /// Those of a stage; `last` is the size of the last step over this one, where that counts.
     pub fn new(stage: usize, last: Option<f64>) -> Self {
-        let [start, first, second, end] = PLACES;
-        let third = |ratio: f64| (second - 1.0) * ratio;
+        let [start, first, second, third, end] = PLACES;
+        // Of the last step.
+        let old = |ratio: f64| (third - 1.0) * ratio;
         let (old, new): (&[f64], &[f64]) = match (stage, last) {
             (1, None) => (&[], &[1.0]),
             (1, Some(ratio)) => {
-                let [a, b, c] = extrapolation([-ratio, third(ratio), start], first);
+                let [a, b, c] = extrapolation([-ratio, old(ratio), start], first);
                 (&[a, b], &[c])
             }
             (2, None) => (&[], &extrapolation([start, first], second)),
             (2, Some(ratio)) => {
-                let [b, c, d] = extrapolation([third(ratio), start, first], second);
+                let [b, c, d] = extrapolation([old(ratio), start, first], second);
                 (&[0.0, b], &[c, d])
             }
-            (_, None) => (&[], &extrapolation([start, first, second], end)),
-            (_, Some(ratio)) => {
-                let [b, c, d, e] = extrapolation([third(ratio), start, first, second], end);
+            (3, None) => (&[], &extrapolation([start, first, second], third)),
+            (3, Some(ratio)) => {
+                let [b, c, d, e] = extrapolation([old(ratio), start, first, second], third);
                 (&[0.0, b], &[c, d, e])
+            }
+            (_, None) => {
+                let [c, e, f] = extrapolation([start, second, third], end);
+                (&[], &[c, 0.0, e, f])
+            }
+            (_, Some(ratio)) => {
+                let [b, c, e, f] = extrapolation([old(ratio), start, second, third], end);
+                (&[0.0, b], &[c, 0.0, e, f])
             }
         };
         let weight = |of: &[f64], index: usize| of.get(index).copied().unwrap_or(0.0);

@@ -22,10 +22,6 @@ use crate::numerics::arrowhead::{BLOCK, Six};
 use crate::numerics::esdirk::{DIAGONAL, EARLIER, ERROR, PLACES, STAGES, WEIGHTS};
 use crate::numerics::motion::Wrench;
 
-/// [-] what the local error of the embedded method, which is of lower order, counts: with this a tolerance leaves the errors that it leaves with HHT
-/// (`scenes/radial.toml`, dry and in oil, with a cage; without, up to three times as much).
-const COUNTED: f64 = 3.0;
-
 /// Where a stage of a step starts from, and what is expected of it.
 pub struct Stage<'a> {
     /// Motion that it starts from, by bearing.
@@ -207,7 +203,7 @@ impl Stages {
     /// Local errors of a structure's coordinates in a step of `h` \[s], by the embedded method.
     pub fn structure_error(&self, structure: usize, h: f64) -> DVector<f64> {
         let reached = &self.structures[structure];
-        let part = |j: usize| &reached[j][0] * (COUNTED * ERROR[j] * h);
+        let part = |j: usize| &reached[j][0] * (ERROR[j] * h);
         (1..STAGES).fold(part(0), |sum, j| sum + part(j))
     }
 }
@@ -354,11 +350,11 @@ impl Reached {
     /// goes on as it is.
     fn follow(&self, balls: usize, h: f64, trend: &mut Trend) {
         let Trend { step, changes, smooth } = trend;
-        let [start, first, second, end] = &self.unknowns;
+        let [start, first, _, third, end] = &self.unknowns;
         *step = h;
         changes.clear();
         changes
-            .extend([start, second].into_iter().flat_map(|of| of.iter().zip(end).map(|(of, end)| of - end)));
+            .extend([start, third].into_iter().flat_map(|of| of.iter().zip(end).map(|(of, end)| of - end)));
         let mut missed = vec![[0.0; 2]; balls + 1];
         for (index, (solved, guesses)) in first.iter().zip(&self.expected).enumerate() {
             for (sum, guess) in missed[(index / BLOCK).min(balls)].iter_mut().zip(guesses) {
@@ -379,7 +375,7 @@ impl Reached {
                 let of = ERROR
                     .iter()
                     .zip(&self.moving)
-                    .map(|(weight, moving)| moving[index][k].rate * (COUNTED * weight * h));
+                    .map(|(weight, moving)| moving[index][k].rate * (weight * h));
                 of.sum::<Vector3<f64>>().norm_squared()
             };
             into.push([error(0), error(1) * length * length]);

@@ -58,8 +58,8 @@ const CHANGING: [(&str, &str); 2] = [
 fn order_three_with_constraints_where_contacts_stay_closed() {
     let scene = scene("thrust", &CHANGING);
     let end = 8e-4;
-    let reference = after(&scene, 1e-6, end);
-    let errors = [2e-5, 1e-5, 5e-6].map(|step| distance(&after(&scene, step, end), &reference));
+    let reference = after(&scene, 5e-7, end);
+    let errors = [1e-5, 5e-6, 2.5e-6].map(|step| distance(&after(&scene, step, end), &reference));
     let orders = [0, 1].map(|k: usize| (errors[k] / errors[k + 1]).log2());
     println!("{errors:?} {orders:?}");
     assert!(orders.iter().all(|order| *order > 2.7), "{orders:?}");
@@ -68,7 +68,7 @@ fn order_three_with_constraints_where_contacts_stay_closed() {
     other.solver.method = Method::Hht;
     let of_other = [1e-5, 5e-6].map(|step| distance(&after(&other, step, end), &reference));
     println!("{of_other:?}");
-    assert!(of_other[0] > 3.0 * of_other[1] && of_other[0] > 4.0 * errors[1], "{of_other:?}");
+    assert!(of_other[0] > 3.0 * of_other[1] && of_other[0] > 4.0 * errors[0], "{of_other:?}");
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn path(scene: &Scene) -> (Vec<Vector3<f64>>, f64) {
 fn regression_less_work_or_less_error_than_the_other_method_with_a_tolerance() {
     let oil = [("film", "{ iso_vg = 68, temperature = \"70 degC\" }"), ("effects.creep", "\"kalker_table\"")];
     for (name, changes, [error, work]) in
-        [("radial", &[][..], [1.1, 0.75]), ("radial", &oil, [1.1, 0.75]), ("cage", &[], [0.7, 1.1])]
+        [("radial", &[][..], [0.3, 0.75]), ("radial", &oil, [0.3, 0.75]), ("cage", &[], [0.5, 0.85])]
     {
         let scene = scene(name, changes);
         let with = |method: Method, step: f64, tolerance: f64| {
@@ -220,4 +220,36 @@ fn regression_less_work_or_less_error_than_the_other_method_with_a_tolerance() {
         let [hht, esdirk3] = table[1];
         assert!(esdirk3.0 < error * hht.0 && esdirk3.1 < work * hht.1, "{name}: {hht:?} {esdirk3:?}");
     }
+}
+
+/// Loads of all balls on the outer race every 0.1 ms, and the steps it took.
+fn loads(scene: &Scene, method: Method, tolerance: f64) -> (Vec<f64>, f64) {
+    let mut scene = scene.clone();
+    scene.solver.method = method;
+    (scene.solver.max_step.0, scene.solver.initial_step.0) = (2e-4, 1e-6);
+    (scene.solver.tolerance, scene.solver.energy_error, scene.solver.unresolved) = (tolerance, 0.0, 0.0);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut loads = vec![];
+    for row in 1..=40 {
+        // Steps end there.
+        simulation.advance_with(1e-4 * f64::from(row), Groups::ALL).unwrap();
+        loads.extend(simulation.outputs().balls.iter().map(|ball| ball.outer.load));
+    }
+    (loads, simulation.state().statistics.steps as f64)
+}
+
+#[test]
+fn order_three_where_balls_run_over_the_edges_of_a_spall() {
+    // Balls let go and touch again: Hertz's load and its damping begin without a kink, so that steps may go over a touch.
+    let scene = scene("effects/spall", &[]);
+    let (reference, _) = loads(&scene, Method::Esdirk3, 1e-11);
+    assert!(reference.contains(&0.0), "no ball lets go");
+    let orders = [(Method::Hht, 1.8), (Method::Esdirk3, 2.7)].map(|(method, least)| {
+        let [coarse, fine] = [1e-7, 1e-9].map(|tolerance| loads(&scene, method, tolerance));
+        let errors = [&coarse.0, &fine.0].map(|of| distance(of, &reference));
+        let order = (errors[0] / errors[1]).ln() / (fine.1 / coarse.1).ln();
+        println!("{method:?}: {errors:?} in {} and {} steps, order {order}", coarse.1, fine.1);
+        (order, least)
+    });
+    assert!(orders.iter().all(|(order, least)| order > least), "{orders:?}");
 }
