@@ -53,8 +53,8 @@ pub struct Instance {
 /// [-] steps in a row whose poses contradict their twists before that is told: a vibration may do so where it turns back.
 const CONTRADICTIONS: u32 = 3;
 
-/// Variables read in one call for which all values are computed together: one by one they take longer.
-const MANY: usize = 16;
+/// Part of all variables that is read in one call from which on all values are computed together: one by one they take about three times as long.
+const MANY: usize = 3;
 
 /// Warnings, each of which is given once.
 #[derive(Clone, Copy, Debug, Default)]
@@ -386,7 +386,7 @@ impl Instance {
             self.refresh()?;
         }
         let stepped = self.state.last_step > 0.0;
-        if stepped && self.present.is_none() && references.len() > MANY {
+        if stepped && self.present.is_none() && MANY * references.len() > self.unit.rows().len() {
             self.present = Some(self.unit.values());
         }
         let (rows, set, present) = (self.unit.rows(), &self.state.values[..], self.present.as_deref());

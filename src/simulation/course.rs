@@ -223,7 +223,7 @@ impl Simulation {
     fn bound(&self) -> StepBound {
         let contacts = match self.model.without_states {
             true => Contacts::from_parts(&self.model, vec![], vec![], [None; 2]),
-            false => self.contacts_of(&self.point).into_owned(),
+            false => self.contacts().clone(),
         };
         StepBound { state: self.state.clone(), contacts }
     }

@@ -1,9 +1,8 @@
 //! State of a bearing at an instant, as far as means of a run are made of it: less than all outputs, for every step.
 
-use super::Simulation;
 use super::entering;
 use super::losses::Losses;
-use super::outputs::{Outputs, RaceOutput, spin_free_frame};
+use super::outputs::{Outputs, RaceOutput, friction_torque, spin_free_frame};
 use super::slip::RollingOrbit;
 use crate::forces::{Contacts, Totals, stored_energy};
 use crate::model::bodies::{PerRace, Race};
@@ -33,6 +32,8 @@ pub struct Instant {
     pub entering_slip_load: f64,
     /// See [`Outputs::friction_power`].
     pub friction_power: f64,
+    /// See [`Outputs::damping_power`].
+    pub damping_power: f64,
     /// See [`Outputs::friction_torque`].
     pub friction_torque: f64,
     /// See [`Outputs::losses`].
@@ -110,8 +111,7 @@ impl Instant {
         let [inner, outer] = Race::BOTH.map(|race| RaceOutput::new(state, model, race));
         Self {
             time: state.time,
-            friction_torque: -state.race(Race::Inner).bearing_wrench.moment.dot(&races.inner.axis)
-                * if speeds[0] < 0.0 { -1.0 } else { 1.0 },
+            friction_torque: friction_torque(state),
             losses: Losses::of(model, state, contacts, (&models, &races), &totals),
             torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
             // Most steps look at it.
@@ -128,6 +128,7 @@ impl Instant {
             ball_slip: rolling.slip_of(rolling.orbit),
             entering_slip_load: entering::slip_load(state, contacts),
             friction_power: totals.friction_power,
+            damping_power: totals.damping_power,
             power_per_ball: Race::BOTH.map(power),
             between_balls: contacts.ball_pairs.iter().map(|pair| pair.forces.load).fold(0.0, f64::max),
             peak_pressure: Race::BOTH.map(pressure),
@@ -173,6 +174,7 @@ impl From<&Outputs> for Instant {
             ball_slip: o.ball_slip,
             entering_slip_load: o.entering_slip_load,
             friction_power: o.friction_power,
+            damping_power: o.damping_power,
             friction_torque: o.friction_torque,
             losses: o.losses,
             torque_power: o.torque_power,
@@ -181,12 +183,5 @@ impl From<&Outputs> for Instant {
             between_balls: o.neighbours.map_or(0.0, |neighbours| neighbours.largest_load),
             peak_pressure: Race::BOTH.map(pressure),
         }
-    }
-}
-
-impl Simulation {
-    /// Quantities where the last step ended; without all other outputs, where nobody asked for these.
-    pub fn instant(&self) -> Instant {
-        self.point.instant(self)
     }
 }

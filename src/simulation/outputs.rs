@@ -194,8 +194,7 @@ impl Outputs {
             margins,
             time: state.time,
             torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
-            friction_torque: -state.race(Race::Inner).bearing_wrench.moment.dot(&races.inner.axis)
-                * sign(speeds[0]),
+            friction_torque: friction_torque(state),
             inner,
             outer,
             balls,
@@ -346,8 +345,11 @@ fn along_orbit(race: &RaceMotion<f64>, offset: &Vector3<f64>, vector: &Vector3<f
     Vector3::new(vector.dot(axis), vector.dot(&radial), vector.dot(&axis.cross(&radial)))
 }
 
-fn sign(x: f64) -> f64 {
-    if x < 0.0 { -1.0 } else { 1.0 }
+/// [N m] friction torque of a state: against the inner race's rotation about its own axis.
+pub(super) fn friction_torque(state: &State) -> f64 {
+    let inner = state.race(Race::Inner);
+    let against = -inner.bearing_wrench.moment.dot(&inner.motion().axis);
+    if inner.rate.x < 0.0 { -against } else { against }
 }
 
 /// Frame that tilts with a race but does not spin.

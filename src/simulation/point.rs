@@ -1,24 +1,21 @@
 //! Outputs of the last communication point: computed when they are first asked for, once.
 
-use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use super::instant::Instant;
-use super::outputs::{Outputs, RaceOutput};
+use super::outputs::{Outputs, RaceOutput, friction_torque};
 use super::{Simulation, conditions};
 use crate::forces::Contacts;
 use crate::model::Conditions;
 use crate::model::bodies::Race;
 
-/// Contacts, as far as they are known.
-#[derive(Clone, Debug)]
+/// Where the contacts of a point are found.
+#[derive(Clone, Copy, Debug)]
 enum Known {
-    /// Nothing: they have to be evaluated.
+    /// Nowhere: they have to be evaluated.
     Nothing,
     /// The workspace has those of the step that led here.
     OfStep,
-    /// All of it.
-    All(Box<Contacts>),
 }
 
 /// Quantities that the outputs of a communication point depend on, beside model and state.
@@ -26,8 +23,12 @@ enum Known {
 pub(super) struct Point {
     /// Conditions there: inputs that are set later are those of the next step.
     conditions: Conditions,
-    /// Its contacts, as far as they are known.
-    contacts: Known,
+    /// Where its contacts are found.
+    known: Known,
+    /// They, once they were asked for.
+    contacts: OnceLock<Box<Contacts>>,
+    /// Sums over them, once they were asked for and the outputs were not.
+    instant: OnceLock<Instant>,
     /// The outputs, once they were asked for.
     outputs: OnceLock<Outputs>,
 }
@@ -35,26 +36,14 @@ pub(super) struct Point {
 impl Point {
     /// A point under these conditions.
     pub fn new(conditions: Conditions, stepped: bool) -> Self {
-        let contacts = if stepped { Known::OfStep } else { Known::Nothing };
-        Self { conditions, contacts, outputs: OnceLock::new() }
+        let known = if stepped { Known::OfStep } else { Known::Nothing };
+        let (contacts, instant, outputs) = Default::default();
+        Self { conditions, known, contacts, instant, outputs }
     }
 
     /// A point whose contacts were evaluated.
     pub fn of_contacts(conditions: Conditions, contacts: Contacts) -> Self {
-        Self { conditions, contacts: Known::All(Box::new(contacts)), outputs: OnceLock::new() }
-    }
-
-    /// Outputs of the bearing there.
-    pub fn instant(&self, simulation: &Simulation) -> Instant {
-        match self.outputs.get() {
-            Some(outputs) => outputs.into(),
-            None => Instant::of(
-                &simulation.model,
-                &simulation.state,
-                &simulation.contacts_of(self),
-                &self.conditions,
-            ),
-        }
+        Self { contacts: OnceLock::from(Box::new(contacts)), ..Self::new(conditions, false) }
     }
 }
 
@@ -62,17 +51,47 @@ impl Simulation {
     /// Outputs of the last communication point.
     pub fn outputs(&self) -> &Outputs {
         let Point { conditions, outputs, .. } = &self.point;
-        outputs
-            .get_or_init(|| Outputs::of(&self.model, &self.state, &self.contacts_of(&self.point), conditions))
+        outputs.get_or_init(|| Outputs::of(&self.model, &self.state, self.contacts(), conditions))
     }
 
-    /// All contacts of a communication point that this is at.
-    pub(super) fn contacts_of<'a>(&'a self, point: &'a Point) -> Cow<'a, Contacts> {
-        match &point.contacts {
-            Known::All(contacts) => Cow::Borrowed(contacts),
-            Known::OfStep => Cow::Owned(self.workspace.contacts(&self.model)),
-            Known::Nothing => Cow::Owned(Contacts::new(&self.model, &self.state, &point.conditions)),
+    /// The outputs of the last communication point, if they were asked for already.
+    pub fn known_outputs(&self) -> Option<&Outputs> {
+        self.point.outputs.get()
+    }
+
+    /// Sums of the last communication point, computed once: for who asks for few of its outputs.
+    pub fn sums(&self) -> &Instant {
+        self.point.instant.get_or_init(|| self.instant())
+    }
+
+    /// All contacts of the last communication point, evaluated once.
+    pub(super) fn contacts(&self) -> &Contacts {
+        let Point { conditions, known, contacts, .. } = &self.point;
+        contacts.get_or_init(|| {
+            Box::new(match known {
+                Known::OfStep => self.workspace.contacts(&self.model),
+                Known::Nothing => Contacts::new(&self.model, &self.state, conditions),
+            })
+        })
+    }
+
+    /// Quantities where the last step ended; without all other outputs, where nobody asked for these.
+    pub fn instant(&self) -> Instant {
+        let Point { conditions, outputs, .. } = &self.point;
+        match outputs.get() {
+            Some(outputs) => outputs.into(),
+            None => Instant::of(&self.model, &self.state, self.contacts(), conditions),
         }
+    }
+
+    /// \[N] normal loads of all contacts with the races at the last communication point, as [`Outputs::loads`].
+    pub fn loads(&self) -> impl Iterator<Item = f64> {
+        self.contacts().balls.iter().flat_map(|ball| [ball.raceways.inner.load, ball.raceways.outer.load])
+    }
+
+    /// [N m] friction torque at the last communication point: [`Outputs::friction_torque`].
+    pub fn friction_torque(&self) -> f64 {
+        friction_torque(&self.state)
     }
 
     /// A race at the last communication point. It takes no contacts, as other outputs do.

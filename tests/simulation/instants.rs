@@ -1,5 +1,6 @@
 //! What means of a run are made of, at every step: the same as its outputs have, and seen without a change of the motion.
 
+use roulement::interface::variables::Variables;
 use roulement::scene::Scene;
 use roulement::simulation::Simulation;
 use roulement::simulation::instant::Instant;
@@ -42,6 +43,40 @@ fn invariant_an_instant_has_what_outputs_have() {
                 assert!((own - of).abs() <= 1e-12 * of.abs(), "{name} {point} {k}: {own} {of}");
             }
             simulation.advance_scripted(simulation.time() + 2e-4).unwrap();
+        }
+    }
+}
+
+#[test]
+fn invariant_a_value_that_is_asked_for_alone_has_the_bits_that_it_has_among_all() {
+    for (name, changes) in [
+        ("thrust", &[][..]),
+        ("radial", &[("effects.creep", "\"kalker_table\""), ("effects.heathcote_slip", "true")]),
+        ("radial", &[("effects.creep", "\"frictionless\"")]),
+        ("cage", &[]),
+        ("misalignment", &[]),
+        ("effects/full_complement", &[]),
+        ("effects/oil_mist", &[]),
+        ("effects/heat", &[]),
+    ] {
+        let scene = scene(name, changes);
+        let table = Variables::moving(&scene, true);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        for point in 0..4 {
+            // Nobody has asked for outputs.
+            let (bare, all) = (simulation.clone(), simulation.clone());
+            for row in table.rows() {
+                let among_all = table.value(row, all.inputs(), all.outputs()).to_bits();
+                let alone = bare.clone();
+                assert_eq!(table.value_of(row, &alone).to_bits(), among_all, "{name} {point}: {}", row.name);
+            }
+            // One after another, those that are in the sums before the others.
+            for row in table.rows() {
+                let among_all = table.value(row, all.inputs(), all.outputs()).to_bits();
+                assert_eq!(table.value_of(row, &bare).to_bits(), among_all, "{name} {point}: {}", row.name);
+            }
+            // A step that ends after a last correction without evaluation, and one that does not.
+            simulation.advance_scripted(simulation.time() + [1e-5, 2e-4][point % 2]).unwrap();
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::geometry::GrooveContact;
 use super::{BallRaceContact, ContactModel, Path};
-use crate::contact::creep::Law;
+use crate::contact::creep::{CreepForces, Creepage, Law};
 use crate::contact::motion::{BallMotion, RaceMotion};
 use crate::contact::pair::PairForces;
 use crate::kalker::scaled_law::Difference;
@@ -89,6 +90,36 @@ pub struct ContactGroup {
 }
 
 impl ContactGroup {
+    /// A buffer to evaluate into.
+    fn empty() -> Self {
+        let zero = Lanes::constant(0.0);
+        let none = Vector3::from_element(zero);
+        let contacts = BallRaceContact {
+            geometry: GrooveContact {
+                approach: zero,
+                normal: none,
+                radial: none,
+                circumferential: none,
+                radius: zero,
+                distance: zero,
+                circumferential_curvature: zero,
+            },
+            load: zero,
+            stiffness: zero,
+            semi_axes: [zero; 2],
+            rolling_speed: zero,
+            creepage: Creepage { longitudinal: zero, lateral: zero, spin: zero, curvature: None },
+            creep: CreepForces { longitudinal: zero, lateral: zero, spin_moment: zero, second_moment: zero },
+            rolling_cosine: zero,
+            force: none,
+            ball_moment: none,
+            race_moment: none,
+            friction_power: zero,
+            damping_power: zero,
+        };
+        Self { contacts, obliquely: false }
+    }
+
     /// All lanes with one contact.
     pub fn filled(contact: &BallRaceContact<f64>) -> Self {
         Self { contacts: contact.zip_with(contact, |x, _| Lanes::constant(x)), obliquely: false }
@@ -147,9 +178,19 @@ impl ContactGroup {
     }
 
     /// The contact in a lane.
-    #[inline(always)]
     pub fn contact(&self, lane: usize) -> BallRaceContact<f64> {
-        self.contacts.zip_with(&self.contacts, |lanes, _| lanes.0[lane])
+        // By a constant for each: one that varies takes a copy of every vector.
+        match lane {
+            0 => self.contact_in::<0>(),
+            1 => self.contact_in::<1>(),
+            2 => self.contact_in::<2>(),
+            _ => self.contact_in::<3>(),
+        }
+    }
+
+    #[inline(always)]
+    fn contact_in<const LANE: usize>(&self) -> BallRaceContact<f64> {
+        self.contacts.zip_with(&self.contacts, |lanes, _| lanes.0[LANE])
     }
 
     /// Where the ball in a lane touches the race.
@@ -185,9 +226,8 @@ impl ContactModel<'_> {
             return (0..balls.len()).map(alone).collect();
         }
         let mut contacts = Vec::with_capacity(balls.len());
-        let mut group = None;
+        let mut group = ContactGroup::empty();
         for (index, balls) in balls.chunks(WIDTH).enumerate() {
-            let group = group.get_or_insert_with(|| ContactGroup::filled(&alone(0)));
             group.evaluate(&self.of_ball(WIDTH * index, None), race, &BallMotion::of_balls(balls));
             contacts.extend((0..balls.len()).map(|lane| group.contact(lane)));
         }

@@ -51,6 +51,8 @@ pub enum Kind {
 }
 
 type FromOutputs = fn(&Outputs) -> f64;
+/// From the state at a communication point and its sums, without all outputs: the same bits.
+type FromPoint = fn(&Simulation) -> f64;
 
 /// Where a variable's value comes from.
 #[derive(Clone, Debug)]
@@ -61,8 +63,8 @@ pub enum Source {
     Friction,
     /// Rise of the temperature of a part, by its index.
     Rise(usize),
-    /// The bearing as a whole.
-    Bearing(FromOutputs),
+    /// The bearing as a whole; from less than all its outputs, where less tells it.
+    Bearing(FromOutputs, Option<FromPoint>),
     /// An input of an effect.
     Input(InputRow),
     /// Losses of a bearing.
@@ -220,7 +222,7 @@ impl Variables {
 
     fn value_with(&self, row: &Variable, inputs: &Inputs, outputs: &Outputs, reports: &Reports<'_>) -> f64 {
         match &row.source {
-            Source::Bearing(get) => get(outputs),
+            Source::Bearing(get, _) => get(outputs),
             Source::Loss(get) => get(&outputs.losses),
             Source::Margin(get) => get(&outputs.margins),
             Source::Effect(getter) => getter.get(reports),
@@ -232,15 +234,21 @@ impl Variables {
         }
     }
 
-    /// Value of a row at the last communication point of a bearing. What races do is read from its state, without all other outputs.
+    /// Value of a row at the last communication point of a bearing. What its state or its sums tell is read from these, without all other
+    /// outputs.
     pub fn value_of(&self, row: &Variable, simulation: &Simulation) -> f64 {
         let inputs = simulation.inputs();
-        match (self.input_value(row, inputs), &row.source) {
-            (Some(given), _) => given,
-            (None, Source::Race(race, quantity, component)) => {
+        match (&row.source, simulation.known_outputs()) {
+            (_, Some(outputs)) => self.value(row, inputs, outputs),
+            (Source::Race(race, quantity, component), _) if row.causality != Causality::Input => {
                 (quantity.read)(&simulation.race_output(*race), *component)
             }
-            (None, _) => self.value(row, inputs, simulation.outputs()),
+            (Source::Bearing(_, Some(get)), _) => get(simulation),
+            (Source::Loss(get), _) => get(&simulation.sums().losses),
+            _ => match self.input_value(row, inputs) {
+                Some(given) => given,
+                None => self.value(row, inputs, simulation.outputs()),
+            },
         }
     }
 
@@ -257,7 +265,7 @@ impl Variables {
                 Some((access.get)(&inputs[*race], *component))
             }
             Source::Race(..)
-            | Source::Bearing(_)
+            | Source::Bearing(..)
             | Source::Loss(_)
             | Source::Margin(_)
             | Source::Effect(_)

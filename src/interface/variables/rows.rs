@@ -2,11 +2,12 @@
 
 use super::race_rows::RACE_VARIABLES;
 use super::race_setting::RaceMotion;
-use super::{Causality, FromOutputs, Kind, Source, Variable, Variables};
+use super::{Causality, FromOutputs, FromPoint, Kind, Source, Variable, Variables};
 use crate::effects::InputRow;
 use crate::effects::growth::RISE;
 use crate::effects::reports::PARTS;
 use crate::model::bodies::Race;
+use crate::model::state::Statistics;
 use crate::scene::Scene;
 use crate::schema::numbers::FRICTION;
 use crate::schema::variable_units::{self as units, Unit};
@@ -21,10 +22,45 @@ fn limits(source: &Source) -> [Option<f64>; 2] {
         Source::Parameter(parameter) => [Some(parameter.range.low), Some(parameter.range.high)],
         Source::Rise(_) => [Some(RISE.low), Some(RISE.high)],
         Source::Margin(_) => [Some(0.0), Some(1.0)],
-        Source::Bearing(_) | Source::Loss(_) | Source::Effect(_) | Source::Input(_) | Source::Shaft(_) => {
+        Source::Bearing(..) | Source::Loss(_) | Source::Effect(_) | Source::Input(_) | Source::Shaft(_) => {
             [None; 2]
         }
     }
+}
+
+/// What tells the value of a row of the bearing as a whole without all outputs: its state, its contacts, or sums over these.
+fn from_less(name: &str) -> Option<FromPoint> {
+    Some(match name {
+        "cage.speed" => |s| s.sums().cage_speed,
+        "cage.slip" => |s| s.sums().cage_slip,
+        "friction_power" => |s| s.sums().friction_power,
+        "damping_power" => |s| s.sums().damping_power,
+        "balls.slip" => |s| s.sums().ball_slip,
+        "balls.entering_slip_load" => |s| s.sums().entering_slip_load,
+        "balls.largest_load" => |s| largest(s.loads()),
+        "balls.smallest_load" => |s| smallest(s.loads()),
+        "friction_torque" => |s| s.friction_torque(),
+        "energy.work" => |s| s.state().energies.input,
+        "energy.dissipated" => |s| s.state().energies.lost(),
+        "integrator.steps" => |s| s.state().statistics.steps as f64,
+        "integrator.rejections" => |s| rejections(&s.state().statistics),
+        "integrator.newton_iterations" => |s| s.state().statistics.newton.iterations as f64,
+        _ => return None,
+    })
+}
+
+fn largest(loads: impl Iterator<Item = f64>) -> f64 {
+    loads.fold(0.0, f64::max)
+}
+
+/// The smallest; 0 where there is none.
+fn smallest(loads: impl Iterator<Item = f64>) -> f64 {
+    let least = loads.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+fn rejections(of: &Statistics) -> f64 {
+    (of.rejected_error + of.rejected_newton) as f64
 }
 
 impl Variables {
@@ -92,7 +128,7 @@ impl Variables {
         let friction = "friction coefficient of the ball-race contacts".to_string();
         self.add("friction".into(), units::ONE, Causality::Input, 0.1, friction, Source::Friction);
         let mut output = |name: &str, unit, nominal, description: &str, get: FromOutputs| {
-            let source = Source::Bearing(get);
+            let source = Source::Bearing(get, from_less(name));
             self.add(name.into(), unit, Causality::Output, nominal, description.into(), source);
         };
         let speed =
@@ -113,12 +149,9 @@ impl Variables {
             o.contact_power(|ball| ball.inner.spin_power + ball.outer.spin_power)
         });
         let load = "largest normal load of a ball on a race";
-        output("balls.largest_load", units::NEWTON, 100.0, load, |o| o.loads().fold(0.0, f64::max));
+        output("balls.largest_load", units::NEWTON, 100.0, load, |o| largest(o.loads()));
         let load = "smallest normal load of a ball on a race";
-        output("balls.smallest_load", units::NEWTON, 100.0, load, |o| {
-            let least = o.loads().fold(f64::INFINITY, f64::min);
-            if least.is_finite() { least } else { 0.0 }
-        });
+        output("balls.smallest_load", units::NEWTON, 100.0, load, |o| smallest(o.loads()));
         let loaded = "number of balls that both races press on";
         output("balls.loaded", units::ONE, 10.0, loaded, |o| {
             o.balls.iter().filter(|ball| ball.inner.load > 0.0 && ball.outer.load > 0.0).count() as f64
@@ -157,13 +190,11 @@ impl Variables {
                 nominal: 1.0,
                 limits: [Some(0.0), None],
                 description: description.into(),
-                source: Source::Bearing(get),
+                source: Source::Bearing(get, from_less(name)),
             });
         };
         count("integrator.steps", "accepted steps since the start", |o| o.statistics.steps as f64);
-        count("integrator.rejections", "rejected steps since the start", |o| {
-            (o.statistics.rejected_error + o.statistics.rejected_newton) as f64
-        });
+        count("integrator.rejections", "rejected steps since the start", |o| rejections(&o.statistics));
         count("integrator.newton_iterations", "Newton iterations since the start", |o| {
             o.statistics.newton.iterations as f64
         });
@@ -195,8 +226,8 @@ impl Variables {
         }
         if every_ball {
             let description = "largest normal load times slip speed of a ball on its way into the load zone; 0 under thrust alone";
-            let source = Source::Bearing(|o| o.entering_slip_load);
             let name = "balls.entering_slip_load";
+            let source = Source::Bearing(|o| o.entering_slip_load, from_less(name));
             // No output: the largest of many has no derivative where another becomes the largest.
             self.add(name.into(), units::WATT, Causality::Local, 1.0, description.into(), source);
         }
