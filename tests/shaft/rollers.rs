@@ -301,7 +301,7 @@ fn refusals_of_rollers_name_key_value_and_range() {
         (own.replace("\"100 mm\" }", "\"100 mm\", axial = \"free\" }"), &["bearing.mounting", "by rollers"]),
         (
             own.replace("name = \"ball\"\ncatalogue = \"6205\"", &format!("name = \"ball\"\n{keys}")),
-            &["at least one [[bearing]] of balls"],
+            &["bearing", "nothing would hold the shaft along its axis", "rollers.axial_way"],
         ),
         (
             own.replace("rollers = {", "stiffness = { radial = 1e8 }\nrollers = {"),

@@ -35,6 +35,13 @@ pub fn held(
             );
             return Err(SceneError::conflict(format!("bearing \"{}\": outer.drive", bearing.name), why));
         }
+        if own().next().is_none() {
+            let why = format!(
+                "nothing would hold {which} along its axis: at least one bearing{on_it} needs ribs (rollers.axial_way), tapered rollers, balls or an \
+                 axial stiffness, or a load displacement.x"
+            );
+            return Err(SceneError::conflict("bearing", why));
+        }
         let why = format!(
             "nothing would hold {which} along its axis: at least one bearing{on_it} needs axial = \"held\""
         );
