@@ -53,7 +53,7 @@ pub struct Instance {
 /// [-] steps in a row whose poses contradict their twists before that is told: a vibration may do so where it turns back.
 const CONTRADICTIONS: u32 = 3;
 
-/// Part of all variables that is read in one call from which on all values are computed together: one by one they take about three times as long.
+/// Part of all variables that is read in one call from which on all values are computed together: one by one they take longer.
 const MANY: usize = 3;
 
 /// Warnings, each of which is given once.

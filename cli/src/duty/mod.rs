@@ -72,8 +72,8 @@ pub struct OfMachine {
     pub hours: [Option<f64>; 2],
     /// [-] least static safety.
     pub safety: f64,
-    /// \[W] all losses of ball bearings.
-    pub loss: f64,
+    /// \[W] losses of all bearings whose losses are known; none where there are no such bearings.
+    pub loss: Option<f64>,
 }
 
 /// The load that takes most of a bearing's life.
@@ -164,7 +164,7 @@ pub fn of_machine(bearings: &[(String, Rated)]) -> Option<OfMachine> {
     (bearings.len() > 1).then(|| OfMachine {
         hours: [0, 1].map(|which| life_of_all(rated().map(|of| of.hours()[which]))),
         safety: rated().map(|of| of.safety).fold(f64::INFINITY, f64::min),
-        loss: rated().filter_map(|of| of.loss).sum(),
+        loss: rated().filter_map(|of| of.loss).reduce(|sum, loss| sum + loss),
     })
 }
 

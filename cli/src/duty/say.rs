@@ -71,7 +71,7 @@ impl DutyRating {
                 modified,
                 Some(of.safety),
                 None,
-                Some(of.loss),
+                of.loss,
                 self.damage_of(&of, part),
             ],
         );
@@ -169,7 +169,7 @@ impl DutyRating {
         let mut row = vec![];
         if let Some(of) = of_machine(&self.together) {
             let damage = self.damage_of(&of, self.whole);
-            row.extend(numbers("", of.hours, [Some(of.safety), Some(of.loss), damage, None]));
+            row.extend(numbers("", of.hours, [Some(of.safety), of.loss, damage, None]));
         }
         for (name, rated) in &self.together {
             let damage = self.damage(rated, self.whole);
@@ -256,9 +256,7 @@ impl fmt::Display for DutyRating {
         }
         if let Some(of) = of_machine(&self.together) {
             let mut words = life(of.hours);
-            words.extend(
-                rest(of.safety, Some(of.loss), self.damage_of(&of, self.whole)).into_iter().flatten(),
-            );
+            words.extend(rest(of.safety, of.loss, self.damage_of(&of, self.whole)).into_iter().flatten());
             writeln!(out, "  {:<15}{}", "machine", words.join(", "))?;
         }
         Ok(())

@@ -274,6 +274,13 @@ fn a_machine_of_rollers_alone_has_its_error_measured_and_no_costs_compared() {
     std::fs::write(&path, text).unwrap();
     let ran = roulement(&["run", "--error", "1e-2", "--json", &path, "-o", &scratch.path("run")]);
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    // Where no bearing has friction, the machine has no losses to tell of.
+    let rated = scratch.read("machine.toml") + "\n[[duty]]\nname = \"all\"\nshare = 1\n";
+    std::fs::write(scratch.path("rated.toml"), rated).unwrap();
+    let rating = roulement(&["rating", &scratch.path("rated.toml")]);
+    let rating = String::from_utf8(rating.stdout).unwrap();
+    let machine = rating.lines().find(|line| line.starts_with("all,(machine),")).unwrap();
+    assert!(machine.ends_with(",,"), "{machine}");
     let cost = roulement(&["cost", &path]);
     let why = String::from_utf8_lossy(&cost.stderr).into_owned();
     assert!(
