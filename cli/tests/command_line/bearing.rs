@@ -275,7 +275,10 @@ fn a_machine_of_rollers_alone_has_its_error_measured_and_no_costs_compared() {
     let ran = roulement(&["run", "--error", "1e-2", "--json", &path, "-o", &scratch.path("run")]);
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
     // Where no bearing has friction, the machine has no losses to tell of.
-    let rated = scratch.read("machine.toml") + "\n[[duty]]\nname = \"all\"\nshare = 1\n";
+    let second =
+        "\n[[bearing]]\nname = \"second\"\ncatalogue = \"NU 206\"\nmounting = { position = \"20 mm\" }\n";
+    let duty = "\n[[duty]]\nname = \"all\"\nshare = 1\n";
+    let rated = scratch.read("machine.toml") + second + duty;
     std::fs::write(scratch.path("rated.toml"), rated).unwrap();
     let rating = roulement(&["rating", &scratch.path("rated.toml")]);
     let rating = String::from_utf8(rating.stdout).unwrap();
