@@ -1,6 +1,6 @@
 //! Bearings of the catalogue that a machine alone has, rollers and those of two rows, each in a machine of its own: a shaft that turns in it.
 
-use roulement::catalogue::{CatalogueError, DoubleRow, rollers_of, rows_of};
+use roulement::catalogue::{CatalogueError, DoubleRow, rollers_of, rows_of, two_digits};
 use roulement::scene::system::SystemScene;
 use roulement::schema::SceneError;
 use thiserror::Error;
@@ -59,11 +59,6 @@ fn text(designation: &str, bearing: &str, pitch: f64, rating: f64) -> String {
     let millimetres = |length: f64| (1e4 * length).round() * 0.1;
     let (thick, half) = (millimetres(SHAFT * pitch), millimetres(pitch));
     let load = two_digits(LOAD * rating);
-    // Mounting comes last, where a key of the bearing would be one of its rollers.
-    let (before, behind) = match bearing.contains("[bearing.rollers]") {
-        true => (String::new(), format!("\n{bearing}")),
-        false => (format!("{bearing}\n"), String::new()),
-    };
     format!(
         "title = \"{designation}, internal geometry estimated\"
 
@@ -88,16 +83,11 @@ rotation = {{ ry = 0, rz = 0 }}
 [[bearing]]
 name = \"{name}\"
 mounting = {{ position = 0 }}
-{before}{behind}
+{bearing}
+
 [load]
 duration = \"20 ms\"
 output_interval = \"100 us\"
 "
     )
-}
-
-/// A number with two digits.
-fn two_digits(value: f64) -> f64 {
-    let unit = 10f64.powf(value.log10().floor() - 1.0);
-    (value / unit).round() * unit
 }

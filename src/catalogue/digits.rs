@@ -11,7 +11,7 @@ pub(super) fn short(value: f64, digits: usize) -> String {
 }
 
 /// A number with two digits.
-pub(super) fn two_digits(value: f64) -> f64 {
+pub fn two_digits(value: f64) -> f64 {
     let unit = 10f64.powf(value.log10().floor() - 1.0);
     (value / unit).round() * unit
 }

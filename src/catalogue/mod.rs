@@ -38,6 +38,7 @@ mod text;
 use std::path::Path;
 
 pub use clearance::Clearance;
+pub use digits::two_digits;
 pub use double_row::{DoubleRow, rows_of};
 pub use error::CatalogueError;
 pub use estimate::{Candidate, STEEL_OF_ISO_76};

@@ -7,7 +7,7 @@ use crate::schema::numbers::{FRICTION, Number, POISSON_RATIO, Parameter, Place, 
 
 const DENSITY: Range = Range::closed(1.0, 1e5, "kg/m3");
 const CONFORMITY: Range = Range::above(0.5, 1.0, "");
-/// To a sphere about the axis, of the largest pitch diameter that balls have ([`super::validate`]).
+/// A groove, or a sphere about the axis, of the largest pitch diameter that balls have ([`super::validate`]).
 const OUTER_CONFORMITY: Range = Range::above(0.5, 1e3, "");
 const MASS: Range = Range::above(0.0, 1e5, "kg");
 const INERTIA: Range = Range::above(0.0, 1e5, "kg m2");
@@ -22,6 +22,11 @@ const LENGTH: Range = Range::closed(0.0, 1.0, "m");
 const RIGHT_ANGLE: Range = Range::closed(0.0, std::f64::consts::FRAC_PI_2 * (1.0 + 1e-12), "rad");
 /// Steps; the smallest, first and largest must agree, too.
 pub(super) const STEP: Range = Range::closed(1e-15, 1e-2, "s");
+pub(super) const MAX_STEP: Range = Range::closed(1e-14, 1e-2, "s");
+pub(super) const ERROR_GOAL: Range = Range::closed(1e-7, 0.5, "");
+pub(super) const DAMPING: Range = Range::above(0.0, 1.0 / 3.0, "");
+pub(super) const TOLERANCE: Range = Range::closed(SMALLEST_TOLERANCE, 1e-2, "");
+pub(super) const SHARE: Range = Range::closed(0.0, 1.0, "");
 
 /// Bearing and materials: those before the effects.
 #[rustfmt::skip]
@@ -114,20 +119,20 @@ static MOTION: [Number<Scene>; 59] = [
     Number::checked("start.inner_velocity", Range::closed(-1e4, 1e4, "m/s"),
         |s| Place::Read(s.start.inner_velocity.iter().flatten().map(|component| component.0).collect())),
     // Before the settings that follow from it.
-    Number::checked("solver.accuracy.error", Range::closed(1e-7, 0.5, ""),
+    Number::checked("solver.accuracy.error", ERROR_GOAL,
         |s| Place::Read(s.solver.goal.iter().map(|goal| goal.error).collect())),
-    Number::fixed("solver.alpha_f", Range::above(0.0, 1.0 / 3.0, ""), "numerical damping of the HHT scheme",
+    Number::fixed("solver.alpha_f", DAMPING, "numerical damping of the HHT scheme",
         |s| Place::Value(Some(&mut s.solver.alpha_f))),
-    Number::tunable("solver.tolerance", Range::closed(SMALLEST_TOLERANCE, 1e-2, ""), "local error of an internal step over the ball diameter",
+    Number::tunable("solver.tolerance", TOLERANCE, "local error of an internal step over the ball diameter",
         |s| Place::Value(Some(&mut s.solver.tolerance))),
     Number::fixed("solver.initial_step", STEP, "first internal step",
         |s| Place::Value(Some(&mut s.solver.initial_step.0))),
-    Number::fixed("solver.max_step", Range::closed(1e-14, 1e-2, "s"), "largest internal step",
+    Number::fixed("solver.max_step", MAX_STEP, "largest internal step",
         |s| Place::Value(Some(&mut s.solver.max_step.0))),
     Number::fixed("solver.min_step", STEP, "smallest internal step; a step that needs a smaller one is not finished",
         |s| Place::Value(Some(&mut s.solver.min_step.0))),
-    Number::checked("solver.matrix_reuse", Range::closed(0.0, 1.0, ""), |s| Place::Value(Some(&mut s.solver.matrix_reuse))),
-    Number::checked("solver.energy_error", Range::closed(0.0, 1.0, ""), |s| Place::Value(Some(&mut s.solver.energy_error))),
+    Number::checked("solver.matrix_reuse", SHARE, |s| Place::Value(Some(&mut s.solver.matrix_reuse))),
+    Number::checked("solver.energy_error", SHARE, |s| Place::Value(Some(&mut s.solver.energy_error))),
     Number::checked("load.duration", Range::above(0.0, 1e6, "s"), |s| Place::Value(Some(&mut s.load.duration.0))),
     Number::checked("load.inner_speed", SPEED, |s| Place::Schedule(&mut s.load.inner_speed)),
     Number::checked("load.outer_speed", SPEED, |s| Place::Schedule(&mut s.load.outer_speed)),

@@ -5,7 +5,7 @@ use super::{BearingSection, Condition, Drive, Giver, Group, Scene, SceneError, S
 use crate::effects::cage::IDEAL_CAGE_NEEDS;
 use crate::effects::defects::On;
 use crate::schema::numbers::Range;
-use crate::schema::{Method, Race, check_duty, check_phases};
+use crate::schema::{Method, Race, Solver, check_duty, check_phases};
 
 /// The directions of a race, in the order of their conditions.
 const DIRECTIONS: [&str; 5] = ["x", "y", "z", "ry", "rz"];
@@ -16,7 +16,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     bearing(scene)?;
     races(scene)?;
     start(scene)?;
-    steps(scene)?;
+    steps(&scene.solver)?;
     method(scene)?;
     scene.effects.agree(&scene.setup())?;
     inputs(scene)?;
@@ -46,6 +46,9 @@ fn inputs(scene: &Scene) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// [-] error of a radius that is written with six digits.
+const ROUNDED: f64 = 1e-6;
+
 fn bearing(scene: &Scene) -> Result<(), SceneError> {
     let bearing = &scene.bearing;
     let (ball, pitch) = (bearing.ball_diameter.0, bearing.pitch_diameter.0);
@@ -63,10 +66,12 @@ fn bearing(scene: &Scene) -> Result<(), SceneError> {
         }
     }
     let cosine = bearing.contact_angle.map_or(1.0, |angle| angle.0.cos().max(1e-3));
-    let sphere = 0.5 + 0.5 * pitch / (ball * cosine);
+    let (sphere, given) = (0.5 + 0.5 * pitch / (ball * cosine), bearing.outer_conformity);
     // Its last digits are those of who writes it.
-    let most = sphere.max(1.0) * (1.0 + 1e-9);
-    Range::above(0.5, most, "").check("bearing.outer_conformity", bearing.outer_conformity)?;
+    if given > 1.0 && (given / sphere - 1.0).abs() > ROUNDED {
+        let why = format!("allowed is (0.5, 1], or {sphere}: a sphere about the middle of the axis");
+        return Err(SceneError::conflict(format!("bearing.outer_conformity = {given}"), why));
+    }
     // Without load the orbit of the balls is the pitch circle, with a contact angle or a clearance.
     let (balls, fit) = (bearing.balls, BearingSection::most_balls(ball, pitch));
     if balls > fit {
@@ -165,8 +170,8 @@ fn start(scene: &Scene) -> Result<(), SceneError> {
 }
 
 /// The first step lies between the smallest and the largest.
-fn steps(scene: &Scene) -> Result<(), SceneError> {
-    let (min, initial, max) = (scene.solver.min_step.0, scene.solver.initial_step.0, scene.solver.max_step.0);
+pub(super) fn steps(solver: &Solver) -> Result<(), SceneError> {
+    let (min, initial, max) = (solver.min_step.0, solver.initial_step.0, solver.max_step.0);
     Range { high: max, ..STEP }.check("solver.min_step", min)?;
     Range { low: min, high: max, ..STEP }.check("solver.initial_step", initial)
 }

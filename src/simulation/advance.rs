@@ -245,7 +245,10 @@ impl Together<'_> {
             },
         );
         let structures = self.structures.as_deref();
-        let buffers = structures.map_or(&self.bearings[0].buffers, |all| &all.buffers);
+        let buffers = match structures {
+            Some(all) => &all.buffers,
+            None => &self.bearings[0].buffers,
+        };
         let steps = structures.map_or(vec![], |all| all.steps(&all.states, loads));
         let elements = structures.map_or(vec![], |all| all.element_steps(self.bearings, boundaries, h));
         let joined = structures.map_or(Joined::default(), |all| all.joined(&elements));

@@ -6,7 +6,7 @@ use std::path::Path;
 use roulement::scene::machine::MachineScene;
 use roulement::scene::system::SystemScene;
 use roulement::simulation::play::{Rows, play};
-use roulement::simulation::system::{MachineEquilibrium, System};
+use roulement::simulation::system::{MachineEquilibrium, Played, System};
 
 use crate::common::{run, scene, system};
 
@@ -190,6 +190,25 @@ fn invariant_rows_between_steps_leave_the_steps_as_they_are() {
     assert_eq!([rows.len(), fine_rows.len()], [3, 201]);
     assert_eq!([rows[1], rows[2]], [fine_rows[100], fine_rows[200]]);
     assert!(fine_rows.windows(2).all(|pair| pair[1].0 > pair[0].0 && pair[1].1 != pair[0].1));
+}
+
+#[test]
+fn closed_form_what_slightly_other_loads_would_do_is_a_compliance() {
+    // Twice the load from the start of a motion: twice the way.
+    let mut system = system(ON_SPRINGS);
+    let inputs = |force: f64| {
+        let mut shaft = system.inputs().clone();
+        shaft.loads[0].force.y = force;
+        (shaft, vec![])
+    };
+    let others = [inputs(1000.0), inputs(2000.0)];
+    let played = Played::none(system.scene());
+    let ends = system.advance_perturbed(1e-4, &others, &played).unwrap();
+    let [one, two] = [&ends[0], &ends[1]].map(|end| end.outputs().loads[0].displacement.y);
+    // A load that grows from nothing over the time t: F t^2/(6 m), within 5 % by the few steps that it takes.
+    let exact = 1000.0 * 1e-8 / (6.0 * 2.0);
+    assert!((one / exact - 1.0).abs() < 0.05 && (two / one - 2.0).abs() < 1e-6, "{one} {two}");
+    assert_eq!([ends[0].time(), system.time()], [1e-4; 2]);
 }
 
 #[test]

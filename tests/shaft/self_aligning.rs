@@ -100,7 +100,7 @@ fn invariant_it_runs_with_its_balls_at_both_levels() {
 }
 
 #[test]
-fn a_sphere_is_the_widest_outer_race() {
+fn a_sphere_is_the_only_outer_race_that_is_wider_than_a_groove() {
     let rows = rows_of("2208").unwrap().unwrap();
     let scene = Scene::parse(&rows.scene).unwrap();
     let [_, outer] = scene.bearing.raceways();

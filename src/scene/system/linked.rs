@@ -3,9 +3,9 @@
 use toml::{Table, Value};
 
 use super::spring::SceneSpring;
-use crate::scene::numbers::STEP;
-use crate::schema::numbers::Range;
-use crate::schema::{ErrorGoal, Method, SMALLEST_TOLERANCE, SceneError, Solver, reader};
+use crate::scene::numbers::{DAMPING, ERROR_GOAL, MAX_STEP, SHARE, TOLERANCE};
+use crate::scene::validate::steps;
+use crate::schema::{Method, SceneError, Solver, reader};
 
 /// \[m] diameter of rolling elements of bearings that are given by their stiffness.
 const USUAL_DIAMETER: f64 = 0.01;
@@ -44,14 +44,11 @@ pub fn check(solver: &Solver) -> Result<(), SceneError> {
         let why = "is for bearings with states: here are none";
         return Err(SceneError::conflict("solver.method", why));
     }
-    let (min, first, most) = (solver.min_step.0, solver.initial_step.0, solver.max_step.0);
-    Range::closed(1e-14, 1e-2, "s").check("solver.max_step", most)?;
-    Range { high: most, ..STEP }.check("solver.min_step", min)?;
-    Range { low: min, high: most, ..STEP }.check("solver.initial_step", first)?;
-    Range::above(0.0, 1.0 / 3.0, "").check("solver.alpha_f", solver.alpha_f)?;
-    Range::closed(SMALLEST_TOLERANCE, 1e-2, "").check("solver.tolerance", solver.tolerance)?;
-    Range::closed(0.0, 1.0, "").check("solver.matrix_reuse", solver.matrix_reuse)?;
-    Range::closed(0.0, 1.0, "").check("solver.energy_error", solver.energy_error)?;
-    let of_goal = |goal: ErrorGoal| Range::closed(1e-7, 0.5, "").check("solver.accuracy.error", goal.error);
-    solver.goal.map_or(Ok(()), of_goal)
+    MAX_STEP.check("solver.max_step", solver.max_step.0)?;
+    steps(solver)?;
+    DAMPING.check("solver.alpha_f", solver.alpha_f)?;
+    TOLERANCE.check("solver.tolerance", solver.tolerance)?;
+    SHARE.check("solver.matrix_reuse", solver.matrix_reuse)?;
+    SHARE.check("solver.energy_error", solver.energy_error)?;
+    solver.goal.map_or(Ok(()), |goal| ERROR_GOAL.check("solver.accuracy.error", goal.error))
 }
