@@ -44,7 +44,7 @@ pub fn machine_of(designation: &str) -> Option<Result<String, InMachineError>> {
         Some(found.map_err(InMachineError::from).and_then(|DoubleRow { scene, dynamic_load_rating, .. }| {
             let row = roulement::Scene::parse(&scene)?;
             let section = format!(
-                "# Two rows of balls on the same shaft and in the same seat: -1 at the smaller x, -2.\ncatalogue = \"{designation}\""
+                "# Two sets of balls on the same shaft and in the same seat: -1, at the smaller x if they lie apart, and -2.\ncatalogue = \"{designation}\""
             );
             Ok(text(designation, &section, row.bearing.pitch_diameter.0, dynamic_load_rating))
         }))

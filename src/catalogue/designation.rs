@@ -229,6 +229,16 @@ pub(super) fn words_of(upper: &str) -> Vec<&str> {
 
 /// Kind, number and clearance of a cylindrical roller bearing of one row; none where a name is of something else.
 pub(super) fn rollers(name: &str) -> Option<(String, String, Clearance)> {
+    lettered(name, &["N", "NU", "NJ", "NUP"])
+}
+
+/// Number and clearance of a four-point contact ball bearing; none where a name is of something else.
+pub(super) fn four_point(name: &str) -> Option<(String, Clearance)> {
+    lettered(name, &["QJ"]).map(|(_, number, class)| (number, class))
+}
+
+/// Letters, number and clearance of a bearing whose kind is some letters before its number; none where they are others.
+fn lettered(name: &str, kinds: &[&str]) -> Option<(String, String, Clearance)> {
     let upper = name.to_ascii_uppercase();
     let mut words = words_of(&upper).into_iter().peekable();
     let mut prefix = String::new();
@@ -243,9 +253,7 @@ pub(super) fn rollers(name: &str) -> Option<(String, String, Clearance)> {
         Part::Class(class) => Some(class),
         Part::Hybrid | Part::Other(_) => None,
     });
-    ["N", "NU", "NJ", "NUP"]
-        .contains(&prefix.as_str())
-        .then(|| (prefix, head.number, class.unwrap_or_default()))
+    kinds.contains(&prefix.as_str()).then(|| (prefix, head.number, class.unwrap_or_default()))
 }
 
 /// Number of a double-row angular contact bearing, and whether its letter is B; none where a name is of something else.

@@ -27,6 +27,7 @@ mod digits;
 mod double_row;
 mod error;
 mod estimate;
+mod four_point;
 mod request;
 mod rings;
 mod rollers;

@@ -174,6 +174,7 @@ inner_speed = \"1500 rpm\"
         DoubleRow {
             scene,
             distance: 1e-3 * pitch * self.tangent,
+            axial_play: 0.0,
             dynamic_load_rating: self.dynamic,
             back_to_back: false,
         }

@@ -130,7 +130,9 @@ impl Instance {
         // A point that a step has led to is found again from its snapshot, but for parameters that have changed.
         self.state.tuned_outputs = None;
         if self.state.changed {
-            self.unit.tune(&self.state.values)?;
+            for begun in self.unit.tune(&self.state.values)? {
+                self.log.write(Status::Ok, &begun);
+            }
             self.state.tuned_outputs = Some(self.unit.values());
             self.state.applied.clone_from(&self.state.values);
             self.state.changed = false;

@@ -25,7 +25,10 @@ pub enum SceneError {
         source: Box<SceneError>,
     },
     /// A value outside its range.
-    #[error("{key} = {value} {unit} is out of range: allowed is {range}")]
+    #[error(
+        "{key} = {value}{space}{unit} is out of range: allowed is {range}",
+        space = if .unit.is_empty() { "" } else { " " }
+    )]
     Range {
         /// Key with its section.
         key: String,

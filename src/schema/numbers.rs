@@ -15,22 +15,30 @@ pub struct Range {
     pub high: f64,
     /// SI unit.
     pub unit: &'static str,
+    /// Are whole numbers allowed alone?
+    pub whole: bool,
 }
 
 impl Range {
     /// Both bounds are allowed.
     pub const fn closed(low: f64, high: f64, unit: &'static str) -> Self {
-        Self { low, low_open: false, high, unit }
+        Self { low, low_open: false, high, unit, whole: false }
     }
 
     /// The lower bound is not allowed.
     pub const fn above(low: f64, high: f64, unit: &'static str) -> Self {
-        Self { low, low_open: true, high, unit }
+        Self { low, low_open: true, high, unit, whole: false }
+    }
+
+    /// Whole numbers, both bounds among them.
+    pub const fn whole(low: f64, high: f64) -> Self {
+        Self { low, low_open: false, high, unit: "", whole: true }
     }
 
     /// Is a value allowed? NaN never is.
     pub fn contains(&self, value: f64) -> bool {
-        value <= self.high && if self.low_open { value > self.low } else { value >= self.low }
+        let above = if self.low_open { value > self.low } else { value >= self.low };
+        above && value <= self.high && (!self.whole || value.fract() == 0.0)
     }
 
     /// Checks a value.
@@ -49,7 +57,8 @@ impl std::fmt::Display for Range {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let bracket = if self.low_open { "(" } else { "[" };
         let space = if self.unit.is_empty() { "" } else { " " };
-        write!(f, "{bracket}{}, {}]{space}{}", self.low, self.high, self.unit)
+        let whole = if self.whole { "whole numbers in " } else { "" };
+        write!(f, "{whole}{bracket}{}, {}]{space}{}", self.low, self.high, self.unit)
     }
 }
 

@@ -84,12 +84,16 @@ impl Machine {
     }
 
     /// Goes on with a scene that differs in tunable parameters alone.
-    pub fn tune(&mut self, scene: &MachineScene) {
+    ///
+    /// # Errors
+    /// If a bearing has no equilibrium to begin another level at; nothing is then changed.
+    pub fn tune(&mut self, scene: &MachineScene) -> Result<(), MachineError> {
         match (self, scene) {
             (Self::Bearing(bearing), MachineScene::Bearing(scene)) => bearing.tune(scene),
-            (Self::Shaft(system), MachineScene::Shaft(scene)) => system.tune(scene),
+            (Self::Shaft(system), MachineScene::Shaft(scene)) => system.tune(scene)?,
             _ => debug_assert!(false, "a scene of another machine"),
         }
+        Ok(())
     }
 
     /// Runs its own steps to exactly `end` \[s] under the inputs as set, some of them given by the scripts where there are some.

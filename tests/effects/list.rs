@@ -291,8 +291,11 @@ fn a_parameter_has_the_range_that_its_key_has_in_a_scene() {
                 let mut changed = scene.clone();
                 changed.set_number(parameter.key, value);
                 let message = changed.check().unwrap_err().to_string();
-                let expected =
-                    format!("{} = {value} {} is out of range: allowed is {range}", parameter.key, range.unit);
+                let space = if range.unit.is_empty() { "" } else { " " };
+                let expected = format!(
+                    "{} = {value}{space}{} is out of range: allowed is {range}",
+                    parameter.key, range.unit
+                );
                 assert_eq!(message, expected);
             }
             let mut same = scene.clone();

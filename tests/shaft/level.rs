@@ -239,3 +239,33 @@ fn cost_a_second_of_machines_at_each_level() {
         }
     }
 }
+
+/// Prints how long communication steps of 50 us take without states, over a million of them: what hardware in the loop has to wait for.
+#[test]
+#[ignore = "a measurement: cargo nextest run --release --test shaft --run-ignored only cost_longest --no-capture"]
+fn cost_longest_of_a_million_steps() {
+    for (name, text) in [("rotor", ROTOR), ("three_stage", THREE_STAGE)] {
+        let mut system = system(&cheap(text));
+        let (mut micros, mut corrections): (Vec<f64>, Vec<u64>) = (vec![], vec![]);
+        for step in 1..=1_000_000u32 {
+            let done = system.statistics().newton.iterations;
+            let begin = std::time::Instant::now();
+            system.advance(50e-6 * f64::from(step)).unwrap();
+            micros.push(1e6 * begin.elapsed().as_secs_f64());
+            corrections.push(system.statistics().newton.iterations - done);
+        }
+        micros.sort_by(f64::total_cmp);
+        let at = |share: f64| micros[(share * (micros.len() - 1) as f64) as usize];
+        let largest = corrections.iter().max().unwrap();
+        let mean = corrections.iter().sum::<u64>() as f64 / corrections.len() as f64;
+        let steps = system.statistics().steps;
+        println!(
+            "{name}: {steps} steps; 50 us take {:.1} us in the middle, {:.1} in 1 of 1000, {:.1} in 1 of 100,000, at most {:.1}; Newton corrections {mean:.2} in the mean, at most {largest}; {:?}",
+            at(0.5),
+            at(0.999),
+            at(0.99999),
+            at(1.0),
+            system.statistics()
+        );
+    }
+}

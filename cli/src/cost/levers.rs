@@ -263,7 +263,7 @@ pub fn usual_settings(scene: &MachineScene) -> Vec<Setting> {
 
 /// Does the method of order 3 know all of a scene? It knows neither balls at even spacing nor bearings without states.
 fn takes_order_three(scene: &MachineScene) -> bool {
-    let resting = |bearing: &MountedScene| bearing.level == scene::Level::Equilibrium;
+    let resting = |bearing: &MountedScene| bearing.level() == scene::Level::Equilibrium;
     let kept_apart = |(_, scene): (_, &Scene)| scene.effects.cage.is_ideal();
     !scene.shaft().is_some_and(|shaft| shaft.bearings.iter().any(resting))
         && !scene.bearings().into_iter().any(kept_apart)

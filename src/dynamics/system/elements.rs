@@ -34,14 +34,10 @@ pub struct ElementJoint {
     pub bearing: usize,
     /// Structure and seat of each race that a structure carries.
     pub seats: PerRace<Option<(usize, Seat)>>,
-    /// [-] speed of the cage against the outer race over that of the inner race against it.
-    pub ratio: f64,
-    /// Damping of its contacts, by creep too, where its balls roll at the start.
-    pub damping: Option<Damping>,
 }
 
 /// Damping of contacts that roll.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Damping {
     /// Force and moment on the inner race against its twist as seen from the outer one.
     pub matrix: Matrix6<f64>,
@@ -66,6 +62,10 @@ pub struct ElementState {
     pub turn: f64,
     /// [rad/s] its rate.
     pub rate: f64,
+    /// [-] speed of the cage against the outer race over that of the inner race against it, as balls rolled where this level began.
+    pub ratio: f64,
+    /// Damping of its contacts, by creep too, where its balls rolled there.
+    pub damping: Option<Damping>,
     /// The elements.
     pub rested: Vec<Rested>,
     /// \[N] largest load.
@@ -124,7 +124,7 @@ impl<'a> ElementStep<'a> {
         h: f64,
         allowed: Allowed,
     ) -> Self {
-        let damping = joint.damping.as_ref().map(|damping| damping.at(start, start.rate));
+        let damping = start.damping.as_ref().map(|damping| damping.at(start, start.rate));
         Self { joint, start, balls, given, damping, elapsed: h, allowed }
     }
 
@@ -171,7 +171,7 @@ impl<'a> ElementStep<'a> {
         let tilting = outer.1.angular_velocity - axes.outer * speeds.outer;
         let velocity = inner.1.velocity - outer.1.velocity - tilting.cross(&arm);
         let back = |v: Vector3<f64>| frame.inverse() * v;
-        let rate = speeds.outer + self.joint.ratio * (speeds.inner - speeds.outer);
+        let rate = speeds.outer + self.start.ratio * (speeds.inner - speeds.outer);
         let turn = self.start.turn + 0.5 * self.elapsed * (self.start.rate + rate);
         let motion = RingMotion {
             placed: Placed { position: back(arm), axis: back(axes.inner) },
@@ -195,7 +195,7 @@ impl<'a> ElementStep<'a> {
         let [inner, outer] = [&seen.races.inner.0, &seen.races.outer.0];
         // A cage of given speed hands the moment that it takes to the rings, as their speeds make its own.
         let axis = inner.orientation * Vector3::x();
-        let moment = moment + axis * (self.joint.ratio * of.turning);
+        let moment = moment + axis * (self.start.ratio * of.turning);
         let arm = inner.position - outer.position;
         OnRaces {
             wrenches: PerRace {
@@ -213,7 +213,7 @@ impl<'a> ElementStep<'a> {
         let forces = self.balls.rest(model, conditions, &seen.motion, &mut rested);
         let [turn, rate] = seen.motion.turn;
         let largest = rested.iter().flat_map(|ball| ball.loads).fold(0.0, f64::max);
-        (ElementState { turn, rate, rested, largest }, self.on_races(seen, &forces))
+        (ElementState { turn, rate, rested, largest, ..*self.start }, self.on_races(seen, &forces))
     }
 
     /// Adds the forces to trials of the structures.
@@ -238,7 +238,7 @@ impl<'a> ElementStep<'a> {
         let mut by_displacement = tangents.by_displacement;
         // A ring that spins turns the elements along.
         let mut by_spin = by_displacement.column_mut(3);
-        by_spin += tangents.by_turn * self.joint.ratio;
+        by_spin += tangents.by_turn * self.start.ratio;
         let by_rate = tangents.by_rate - self.damping.unwrap_or_else(Matrix6::zeros);
         let gains = by_displacement * step.position_gain() + by_rate * step.velocity_gain();
         let ends = PerRace::new(|race| self.relative(race, seen));

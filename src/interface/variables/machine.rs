@@ -195,6 +195,7 @@ impl MachineVariables {
             ShaftSource::Given(index, _) => Some(MachineGroup::Motion(index)),
             ShaftSource::Frame(..) => Some(MachineGroup::Frame),
             ShaftSource::Number(_)
+            | ShaftSource::Jump(..)
             | ShaftSource::Whole(..)
             | ShaftSource::Link(..)
             | ShaftSource::Housing(..)

@@ -6,7 +6,7 @@ use crate::effects::frame::FrameSection;
 use crate::scene::system::{NamedLoad, ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
 use crate::simulation::system::{
-    HousingOutputs, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs,
+    HousingOutputs, LevelJump, LinkOutputs, PointOutput, ShaftInputs, ShaftOutputs, SystemOutputs,
 };
 
 /// Where the value of a variable of the shaft comes from.
@@ -24,6 +24,8 @@ pub enum ShaftSource {
     Frame(usize, usize),
     /// A number of the scene.
     Number(ShaftParameter),
+    /// What changes of a bearing's level did.
+    Jump(usize, fn(&LevelJump) -> f64),
     /// A shaft as a whole, by its index.
     Whole(usize, fn(&ShaftOutputs) -> f64),
     /// A component of what a mesh or a bearing by its stiffness does, by its index.
@@ -160,6 +162,7 @@ impl ShaftSource {
                 inputs.frame.map_or(0.0, |frame| frame.motion.vector(quantity)[axis])
             }
             Self::Number(parameter) => parameter.start,
+            Self::Jump(bearing, get) => get(&outputs.jumps[bearing]),
             Self::Whole(shaft, get) => get(&outputs.shafts[shaft]),
             Self::Link(index, get) => get(&outputs.links[index]),
             Self::Housing(index, get) => get(&outputs.housings[index]),
@@ -219,6 +222,7 @@ impl ShaftSource {
                 }
             }
             Self::Number(_)
+            | Self::Jump(..)
             | Self::Whole(..)
             | Self::Link(..)
             | Self::Housing(..)
@@ -345,6 +349,31 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     }
     for index in 0..scene.housings.len() {
         housing(scene, index, &mut rows);
+    }
+    for (index, bearing) in scene.bearings.iter().enumerate().filter(|(_, own)| own.dynamic.is_some()) {
+        let mut jump = |key: &str, unit, what: &str, get| {
+            let name = format!("{}.level.{key}", quoted(&bearing.name));
+            let source = ShaftSource::Jump(index, get);
+            rows.push(row(
+                name,
+                unit,
+                Causality::Output,
+                format!("{what} of bearing {}", bearing.name),
+                source,
+            ));
+        };
+        let one = (units::ONE, 1.0);
+        jump("changes", one, "changes of the level since the start", |jump| f64::from(jump.changes));
+        let on = "on the inner ring at the last change of the level";
+        jump("force_jump", (units::NEWTON, 1.0), &format!("size of the jump of the force {on}"), |jump| {
+            jump.force
+        });
+        jump(
+            "moment_jump",
+            (units::NEWTON_METRE, 1e-2),
+            &format!("size of the jump of the moment {on}"),
+            |jump| jump.moment,
+        );
     }
     for (name, parameter) in scene.parameters() {
         let number = parameter.number;

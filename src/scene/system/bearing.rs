@@ -32,6 +32,9 @@ pub struct WrittenBearing {
     /// Level of its model: its motion in time (`"dynamic"`, if not given), elements in balance at every place of its rings, without states
     /// (`"equilibrium"`; rollers always are), or the one that what acts on it asks for (`"auto"`).
     pub level: Option<BearingLevel>,
+    /// May a package change that level from one communication step to the next, by its parameter `NAME.dynamic`?
+    #[serde(default)]
+    pub level_changes: bool,
     /// Its stiffness, in place of a scene: springs instead of balls.
     pub stiffness: Option<StiffnessSection>,
     /// Its cylindrical or tapered rollers, in place of a scene.
@@ -130,7 +133,7 @@ impl WrittenBearing {
     /// # Errors
     /// With its name and what is wrong.
     pub fn read(self, given: &Shared) -> Result<MountedScene, SceneError> {
-        let Self { name, scene, catalogue, level, shaft, mounting, set, .. } = self;
+        let Self { name, scene, catalogue, level, level_changes, shaft, mounting, set, .. } = self;
         let finds_level = level == Some(BearingLevel::Auto);
         let level = match level {
             Some(BearingLevel::Equilibrium) => Level::Equilibrium,
@@ -142,6 +145,10 @@ impl WrittenBearing {
         let (shaft, outer_shaft) = (named(&shaft).unwrap_or(0), named(&mounting.outer_shaft));
         let inside =
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
+        if finds_level && level_changes {
+            let why = "level = \"auto\" finds the level before the run; give the one to begin with, \"dynamic\" or \"equilibrium\"";
+            return Err(inside(SceneError::conflict("bearing.level_changes", why)));
+        }
         let mut estimated_mass = None;
         let catalogued = catalogue.is_some();
         let (text, folder, file) = match (scene, catalogue) {
@@ -193,10 +200,24 @@ impl WrittenBearing {
         if mounting.seats_outer_ring() && scene.effects.cage.is_ideal() {
             return Err(inside(SceneError::conflict("effects.cage", IDEAL_CAGE_NEEDS)));
         }
-        if level == Level::Equilibrium {
+        if level == Level::Equilibrium || level_changes {
             without_states(&scene).map_err(inside)?;
         }
-        Ok(MountedScene { name, shaft, outer_shaft, mounting, level, finds_level, scene })
+        if level_changes && (scene.effects.cage.is_ideal() || scene.solver.level == Level::Equilibrium) {
+            let (key, why) = match scene.effects.cage.is_ideal() {
+                true => (
+                    "effects.cage",
+                    "an ideal cage is for a bearing whose level stays: take it out, or level_changes",
+                ),
+                false => (
+                    "solver.level",
+                    "\"equilibrium\" takes the states of all bearings away: take it out, or level_changes",
+                ),
+            };
+            return Err(inside(SceneError::conflict(key, why)));
+        }
+        let dynamic = level_changes.then(|| f64::from(level == Level::Dynamic));
+        Ok(MountedScene { name, shaft, outer_shaft, mounting, level, dynamic, finds_level, scene })
     }
 }
 
@@ -209,8 +230,8 @@ impl MountedScene {
 
 /// Refuses what needs states in a bearing that has none.
 fn without_states(scene: &Scene) -> Result<(), SceneError> {
-    let why = "is for a bearing with states: one of level = \"equilibrium\" has balls in balance wherever its rings are; take it out, or give \
-               level = \"dynamic\"";
+    let why = "is for a bearing with states: one of level = \"equilibrium\", or with level_changes, has balls in balance wherever its rings are; \
+               take it out, or give level = \"dynamic\" alone";
     stateful(scene).map_or(Ok(()), |key| Err(SceneError::conflict(key, why)))
 }
 

@@ -211,6 +211,7 @@ fn linked(bearing: &WrittenBearing) -> Result<(), SceneError> {
         ("bearing.scene", bearing.scene.is_some()),
         ("bearing.catalogue", bearing.catalogue.is_some()),
         ("bearing.set", !bearing.set.is_empty()),
+        ("bearing.level_changes", bearing.level_changes),
         ("bearing.mounting", mounting.axial == AxialSeat::Free || preload),
     ];
     if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {

@@ -87,13 +87,24 @@ pub struct MountedScene {
     pub mounting: Mounting,
     /// Has it states in the steps of the machine, or are its balls in balance at every place of its rings?
     pub level: Level,
-    /// Is that found out by what acts, before a run? With states until then.
+    /// Number that a package changes the level by: 1 with states, 0 without; none where the level stays.
+    pub dynamic: Option<f64>,
+    /// Is the level found out by what acts, before a run? With states until then.
     pub finds_level: bool,
     /// The bearing by itself, in axes of its own; its inner race is moved by the shaft.
     pub scene: Scene,
 }
 
 impl MountedScene {
+    /// Its level at present.
+    pub fn level(&self) -> Level {
+        match self.dynamic {
+            Some(0.0) => Level::Equilibrium,
+            Some(_) => Level::Dynamic,
+            None => self.level,
+        }
+    }
+
     /// \[m] place x, y, z of its centre in the axes of all shafts, which are given.
     pub fn place(&self, shafts: &[ShaftSection]) -> [f64; 3] {
         shafts[self.shaft].place(self.mounting.position.0)

@@ -12,6 +12,7 @@ const RETARDATION: Range = Range::closed(0.0, 1.0, "s");
 const FORCE: Range = Range::closed(-1e9, 1e9, "N");
 const WAY: Range = Range::closed(-0.1, 0.1, "m");
 const TOLERANCE: Range = Range::closed(1e-14, 1e-2, "");
+const LEVEL: Range = Range::whole(0.0, 1.0);
 const STEP: Range = Range::closed(1e-15, 1e-2, "s");
 
 /// Which of several parts a number is of: names stand before its key, or in it.
@@ -88,7 +89,7 @@ const fn solver(
 
 /// All of them.
 #[rustfmt::skip]
-static NUMBERS: [ShaftNumber; 24] = [
+static NUMBERS: [ShaftNumber; 25] = [
     number("mass", "mass of the shaft", MASS, of_shafts, |s, k| s.shafts.get_mut(k)?.mass.as_mut().map(|mass| &mut mass.0)),
     number("polar_inertia", "moment of inertia of the shaft about its axis", INERTIA, of_shafts,
         |s, k| s.shafts.get_mut(k)?.polar_inertia.as_mut().map(|inertia| &mut inertia.0)),
@@ -127,6 +128,11 @@ static NUMBERS: [ShaftNumber; 24] = [
         let bearing = s.bearings.get_mut(k).filter(|bearing| bearing.mounting.axial == AxialSeat::Free)?;
         bearing.scene.outer.mass.as_mut().map(|mass| &mut mass.0)
     }),
+    ShaftNumber {
+        variability: Variability::Tunable,
+        ..number("dynamic", "level of the bearing: 1 with states (\"dynamic\"), 0 without (\"equilibrium\")", LEVEL, of_bearings,
+            |s, k| s.bearings.get_mut(k)?.dynamic.as_mut())
+    },
     number("mass", "mass of the housing", MASS, of_housings, |s, k| s.housings.get_mut(k)?.mass.as_mut().map(|mass| &mut mass.0)),
     solver("tolerance", "local error of an internal step over the ball diameter", (TOLERANCE, Variability::Tunable),
         |s, k| s.solver_of(k).map(|solver| &mut solver.tolerance)),

@@ -1,4 +1,4 @@
-//! Bearings of two rows in a machine: each row becomes a bearing of its own, on the same shaft and in the same seat.
+//! Bearings of two rows, or two sets of balls at one place, in a machine: each becomes a bearing of its own, on the same shaft and in the same seat.
 
 use toml::{Table, Value};
 
@@ -38,7 +38,7 @@ fn both(bearing: &Value, catalogue: Catalogue) -> Result<Option<[Table; 2]>, Sce
         place: format!("bearing \"{name}\""),
         source: Box::new(SceneError::conflict(key, why)),
     };
-    let DoubleRow { scene, distance, back_to_back, .. } =
+    let DoubleRow { scene, distance, axial_play, back_to_back, .. } =
         found.map_err(|why| refuse("bearing.catalogue", why.to_string()))?;
     if mounting.axial == AxialSeat::Free {
         let why = format!(
@@ -59,6 +59,10 @@ fn both(bearing: &Value, catalogue: Catalogue) -> Result<Option<[Table; 2]>, Sce
         if let Some(seat) = seat.as_table_mut() {
             seat.insert("position".into(), (mounting.position.0 + along).into());
             seat.insert("direction".into(), direction.into());
+            if axial_play > 0.0 && !seat.contains_key("preload") {
+                let way = Table::from_iter([("displacement".to_owned(), Value::Float(-0.5 * axial_play))]);
+                seat.insert("preload".into(), way.into());
+            }
             if mounting.has_bore() {
                 let (offset, tilt) = mounting.bore();
                 let place = Table::from_iter([

@@ -35,8 +35,8 @@ const NO_SPEED: f64 = 1e-6;
 /// [rad/s] speed of the cage against the outer race from which on contacts damp by creep.
 const ROLLS: f64 = 0.1;
 
-/// Marks the bearings of the scene that are without states; gives these with their seats, and the joints of the others, which are counted without
-/// them.
+/// Marks the bearings of the scene that are without states, at its present levels; gives these with their seats, and the joints of the others, which are
+/// counted without them.
 pub fn joints(
     scene: &SystemScene,
     joints: &[Joint],
@@ -45,22 +45,20 @@ pub fn joints(
     let (mut elements, mut stepped, mut count) = (vec![], vec![], 0);
     for (index, (mounted, bearing)) in scene.bearings.iter().zip(bearings).enumerate() {
         let own = joints.iter().filter(|joint| joint.bearing == index);
-        if mounted.level == Level::Dynamic {
+        let without_states = mounted.level() == Level::Equilibrium;
+        if bearing.model.without_states != without_states {
+            Arc::make_mut(&mut bearing.model).without_states = without_states;
+        }
+        if !without_states {
             stepped.extend(own.map(|joint| Joint { bearing: count, ..joint.clone() }));
             count += 1;
             continue;
         }
-        Arc::make_mut(&mut bearing.model).without_states = true;
         let seats = PerRace::new(|race| {
             let joint = joints.iter().find(|joint| joint.bearing == index && joint.race == race)?;
             Some((joint.structure, joint.seat.clone()))
         });
-        elements.push(ElementJoint {
-            bearing: index,
-            seats,
-            ratio: ratio(bearing),
-            damping: damping(bearing),
-        });
+        elements.push(ElementJoint { bearing: index, seats });
     }
     (elements, stepped)
 }
@@ -98,27 +96,43 @@ pub fn started(
     states: &[StructureState],
     bearings: &mut [Simulation],
 ) -> Vec<ElementState> {
-    let of = |joint: &ElementJoint| {
-        let bearing = &mut bearings[joint.bearing];
-        let boundary = bearing.boundary(bearing.state.time);
-        let nothing = ElementState { turn: 0.0, rate: 0.0, rested: vec![], largest: 0.0 };
-        let mut step = step(joint, &nothing, bearing, &boundary, 0.0);
-        let seen = step.seen_in(carriers, states);
-        step.balls = Balls::new(&bearing.model, &boundary.conditions, seen.speeds());
-        if joint.damping.is_some() {
-            step.balls.leave_damping();
-        }
-        let placed = step.balls.placed(&bearing.model, &boundary.conditions, &seen.motion);
-        let [_, rate] = seen.motion.turn;
-        let start = ElementState { rate, rested: placed, ..nothing.clone() };
-        let step = ElementStep { start: &start, ..step };
-        let (state, on) = step.rest(&bearing.model, &boundary.conditions, &seen);
-        bearing.rest(&step, (&seen, &on), &state, &boundary, None);
-        // What was seen before is not what the elements show.
-        bearing.reach(false);
-        state
+    elements
+        .iter()
+        .map(|joint| started_at(0.0, joint, (carriers, states), &mut bearings[joint.bearing]))
+        .collect()
+}
+
+/// State of the elements of a bearing that is in equilibrium, where they have turned by so much \[rad].
+pub fn started_at(
+    turn: f64,
+    joint: &ElementJoint,
+    (carriers, states): (&[Carrier], &[StructureState]),
+    bearing: &mut Simulation,
+) -> ElementState {
+    let boundary = bearing.boundary(bearing.state.time);
+    let nothing = ElementState {
+        turn,
+        rate: 0.0,
+        ratio: ratio(bearing),
+        damping: damping(bearing),
+        rested: vec![],
+        largest: 0.0,
     };
-    elements.iter().map(of).collect()
+    let mut step = step(joint, &nothing, bearing, &boundary, 0.0);
+    let seen = step.seen_in(carriers, states);
+    step.balls = Balls::new(&bearing.model, &boundary.conditions, seen.speeds());
+    if nothing.damping.is_some() {
+        step.balls.leave_damping();
+    }
+    let placed = step.balls.placed(&bearing.model, &boundary.conditions, &seen.motion);
+    let [_, rate] = seen.motion.turn;
+    let start = ElementState { rate, rested: placed, ..nothing };
+    let step = ElementStep { start: &start, ..step };
+    let (state, on) = step.rest(&bearing.model, &boundary.conditions, &seen);
+    bearing.rest(&step, (&seen, &on), &state, &boundary, None);
+    // What was seen before is not what the elements show.
+    bearing.reach(false);
+    state
 }
 
 /// The elements of all bearings in a step of `h` \[s] to these boundaries.
@@ -149,7 +163,7 @@ fn step<'a>(
     let allowed = Allowed { length: solver.tolerance * 2.0 * model.bearing.ball.radius, unresolved };
     // Inertia follows the speeds of the start of the step.
     let mut balls = Balls::new(model, &boundary.conditions, [start.rate, outer]);
-    if joint.damping.is_some() {
+    if start.damping.is_some() {
         balls.leave_damping();
     }
     ElementStep::new(joint, start, balls, &boundary.motion, h, allowed)

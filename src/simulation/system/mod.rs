@@ -2,6 +2,7 @@
 
 mod advance;
 mod assembly;
+mod change_level;
 mod critical_speeds;
 mod elements;
 mod equilibrium;
@@ -33,6 +34,7 @@ use crate::numerics::step_control::StepControl;
 use crate::scene::system::SystemScene;
 use crate::schema::numbers::four;
 pub use assembly::InBalance;
+pub use change_level::LevelJump;
 pub use critical_speeds::{Campbell, CampbellRow, CriticalSpeed, at_speed, campbell, largest_speed};
 pub use equilibrium::{BearingEquilibrium, MachineEquilibrium};
 pub use inputs::{Played, ShaftInputs, drive_is_scripted};
@@ -167,7 +169,11 @@ impl System {
     }
 
     /// Goes on with a scene that differs in tunable parameters of its bearings and steps alone.
-    pub fn tune(&mut self, scene: &SystemScene) {
+    ///
+    /// # Errors
+    /// If a bearing has no equilibrium to begin its new level at; nothing is then changed.
+    pub fn tune(&mut self, scene: &SystemScene) -> Result<(), SystemError> {
+        self.change_levels(scene)?;
         let own = Arc::make_mut(&mut self.structures.scene);
         own.of_links = scene.of_links;
         for ((bearing, mounted), tuned) in
@@ -177,6 +183,7 @@ impl System {
             mounted.scene = tuned.scene.clone();
         }
         self.structures.solver = scene.solver();
+        Ok(())
     }
 
     /// Work of its steps since the start, without that of contacts.

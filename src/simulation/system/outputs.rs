@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DVector, Vector3};
 
-use super::{first_stations, housing_stations};
+use super::{LevelJump, first_stations, housing_stations};
 use crate::model::link::rollers::RollerOutputs;
 use crate::model::link::{Law, Link, LinkState};
 use crate::model::structure::{Carrier, Map, Spin, StructureEnergies, StructurePowers, StructureState};
@@ -148,6 +148,8 @@ pub struct SystemOutputs {
     pub points: Vec<PointOutput>,
     /// \[N, N m] what holds each motion that is given, in the order of [`SystemScene::motions`]: force and moment on the shaft or the housing.
     pub holding: Vec<f64>,
+    /// What changes of level did, in the order of the scene's bearings.
+    pub jumps: Vec<LevelJump>,
     /// Outputs of meshes, then of bearings by their stiffness, in the order of the scene.
     pub links: Vec<LinkOutputs>,
     /// Outputs of the housings, in the order of the scene.
@@ -215,6 +217,7 @@ impl SystemOutputs {
             loads: each(|[loads, points, ..]| loads..points),
             points: each(|[_, points, discs, ..]| points..discs),
             holding: states.iter().flat_map(|state| state.holding.iter().copied()).collect(),
+            jumps: vec![],
             links: vec![],
             housings: housings.collect(),
             ground: states

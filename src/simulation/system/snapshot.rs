@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::super::play::Scripted;
 use super::super::{Simulation, Snapshot};
-use super::System;
 use super::inputs::{ShaftInputs, ShaftPaths};
 use super::pace::Pace;
+use super::{LevelJump, System};
 use crate::dynamics::system::KeptBorder;
 use crate::dynamics::system::elements::ElementState;
 use crate::model::link::LinkState;
@@ -23,6 +23,10 @@ pub struct SystemSnapshot {
     links: Vec<LinkState>,
     /// States of the elements of bearings that have no others.
     elements: Vec<ElementState>,
+    /// Which bearings have states.
+    with_states: Vec<bool>,
+    /// What changes of level did.
+    jumps: Vec<LevelJump>,
     /// Matrix of steps of a machine all of whose bearings are without states, if one is kept.
     border: Option<KeptBorder>,
     pace: Pace,
@@ -37,6 +41,10 @@ impl SystemSnapshot {
 }
 
 impl System {
+    fn with_states(&self) -> impl Iterator<Item = bool> {
+        self.bearings.iter().map(|bearing| !bearing.model.without_states)
+    }
+
     /// Everything needed to come back to this point.
     pub fn snapshot(&self) -> SystemSnapshot {
         SystemSnapshot {
@@ -45,6 +53,8 @@ impl System {
             states: self.structures.states.clone(),
             links: self.structures.link_states.clone(),
             elements: self.structures.element_states.clone(),
+            with_states: self.with_states().collect(),
+            jumps: self.structures.jumps.clone(),
             border: self.structures.buffers.border.kept(),
             pace: self.structures.pace,
             bearings: self.bearings.iter().map(Simulation::snapshot).collect(),
@@ -53,7 +63,18 @@ impl System {
 
     /// That, in the memory of an earlier one of this system.
     pub fn snapshot_into(&self, snapshot: &mut SystemSnapshot) {
-        let SystemSnapshot { inputs, paths, states, links, elements, border, pace, bearings } = snapshot;
+        let SystemSnapshot {
+            inputs,
+            paths,
+            states,
+            links,
+            elements,
+            with_states,
+            jumps,
+            border,
+            pace,
+            bearings,
+        } = snapshot;
         *border = self.structures.buffers.border.kept();
         *pace = self.structures.pace;
         inputs.clone_from(&self.structures.inputs);
@@ -61,6 +82,9 @@ impl System {
         states.clone_from(&self.structures.states);
         links.clone_from(&self.structures.link_states);
         elements.clone_from(&self.structures.element_states);
+        with_states.clear();
+        with_states.extend(self.with_states());
+        jumps.clone_from(&self.structures.jumps);
         bearings.truncate(self.bearings.len());
         let (old, new) = self.bearings.split_at(bearings.len());
         old.iter().zip(&mut *bearings).for_each(|(bearing, snapshot)| bearing.snapshot_into(snapshot));
@@ -72,6 +96,8 @@ impl System {
     pub fn restore(&mut self, snapshot: &SystemSnapshot) -> bool {
         let same = snapshot.bearings.len() == self.bearings.len()
             && self.bearings.iter().zip(&snapshot.bearings).all(|(bearing, snapshot)| bearing.fits(snapshot))
+            && self.with_states().eq(snapshot.with_states.iter().copied())
+            && snapshot.jumps.len() == self.bearings.len()
             && snapshot.inputs.fits(&self.structures.inputs)
             && snapshot.paths.fits(&self.structures.inputs)
             && snapshot.links.len() == self.structures.link_states.len()
@@ -100,6 +126,7 @@ impl System {
             self.structures.states.clone_from(&snapshot.states);
             self.structures.link_states.clone_from(&snapshot.links);
             self.structures.element_states.clone_from(&snapshot.elements);
+            self.structures.jumps.clone_from(&snapshot.jumps);
             let restored = self.bearings.iter_mut().zip(&snapshot.bearings);
             let all = restored.fold(true, |all, (bearing, snapshot)| bearing.restore(snapshot) && all);
             debug_assert!(all, "they were looked at");

@@ -10,7 +10,7 @@ use super::assembly::Assembly;
 use super::elements;
 use super::inputs::ShaftInputs;
 use super::pace::Pace;
-use super::{Structures, System, SystemError, SystemOutputs};
+use super::{LevelJump, Structures, System, SystemError, SystemOutputs};
 use crate::analysis::auto;
 use crate::dynamics::system::{Joined, Joint, StepBuffers, StructureStep, StructureTrial};
 use crate::model::link;
@@ -107,6 +107,7 @@ impl System {
             stepped: Arc::new(stepped),
             elements: Arc::new(elements),
             element_states,
+            jumps: vec![LevelJump::default(); scene.bearings.len()],
             links: Arc::new(links),
             link_states,
             inputs,
@@ -134,7 +135,7 @@ pub(super) fn found_out(scene: &SystemScene) -> Result<Cow<'_, SystemScene>, Sys
 }
 
 /// States of the structures where a run starts, with accelerations under what the bearings do.
-fn started(
+pub(super) fn started(
     carriers: &[Carrier],
     structures: &[StructureStep<'_>],
     joined: Joined<'_>,

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use super::inputs::{Given, Played, ShaftInputs, ShaftPaths};
 use super::pace::Pace;
-use super::{LinkOutputs, SystemOutputs, loads};
+use super::{LevelJump, LinkOutputs, SystemOutputs, loads};
 use crate::dynamics::system::elements::{ElementJoint, ElementState, ElementStep, residual_of};
 use crate::dynamics::system::{Joined, Joint, MayLeave, StepBuffers, StructureLoad, StructureStep};
 use crate::dynamics::{Allowed, Boundary};
@@ -33,6 +33,8 @@ pub struct Structures {
     pub elements: Arc<Vec<ElementJoint>>,
     /// States of their elements.
     pub element_states: Vec<ElementState>,
+    /// What changes of level did, in the order of the scene's bearings.
+    pub jumps: Vec<LevelJump>,
     /// Links between them: meshes, then bearings by their stiffness.
     pub links: Arc<Vec<Link>>,
     /// States of these.
@@ -161,6 +163,7 @@ impl Structures {
         let torques: Vec<_> = (0..self.scene.shafts.len()).map(torque).collect();
         self.outputs = SystemOutputs::of(&self.scene, &self.carriers, &self.states, &torques, time);
         let links = self.link_states.iter().enumerate();
+        self.outputs.jumps.clone_from(&self.jumps);
         self.outputs.links = links.map(|(index, state)| LinkOutputs::of(&self.links, index, state)).collect();
     }
 }
