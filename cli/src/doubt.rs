@@ -7,7 +7,6 @@ use roulement::catalogue::Bearing;
 use roulement::simulation::Simulation;
 use thiserror::Error;
 
-use crate::duty::rated::{speed, torque_of_losses};
 use crate::fits::{WITHIN, by_words};
 use crate::sweep::all::on_threads;
 
@@ -41,10 +40,13 @@ type Quantity = (&'static str, &'static str, fn(&Simulation) -> Option<f64>);
 const QUANTITIES: [Quantity; 6] = [
     ("life L10r", "h", |of| {
         let life = of.outputs().life?.reference;
-        Some(life * 1e6 * std::f64::consts::TAU / speed(of) / 3600.0).filter(|life| life.is_finite())
+        Some(life * 1e6 * std::f64::consts::TAU / of.outputs().relative_speed().abs() / 3600.0)
+            .filter(|life| life.is_finite())
     }),
     ("static safety", "", |of| Some(of.outputs().life?.static_safety)),
-    ("torque", "N mm", |of| Some(1e3 * torque_of_losses(of)).filter(|_| speed(of) > 0.0)),
+    ("torque", "N mm", |of| {
+        Some(1e3 * of.outputs().torque_of_losses()).filter(|_| of.outputs().relative_speed() != 0.0)
+    }),
     ("losses", "W", |of| Some(of.outputs().losses.total())),
     ("largest ball load", "N", |of| largest(of, |ball| ball.inner.load)),
     ("peak pressure", "MPa", |of| {

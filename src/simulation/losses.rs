@@ -3,6 +3,7 @@
 //! Powers of contacts are those of the forces that act: what a contact loses beside the sliding of its creep forces is rolling
 //! resistance and what the material resists, so that all parts together are the whole to the last digits.
 
+use super::outputs::Outputs;
 use crate::contact::{ContactModel, RaceMotion};
 use crate::dynamics::power_lost_around;
 pub use crate::effects::LOSSES;
@@ -51,5 +52,21 @@ impl Losses {
             damping: totals.damping_power,
             support,
         }
+    }
+}
+
+impl Outputs {
+    /// [rad/s] speed of the inner race against the outer one, about their own axes.
+    pub fn relative_speed(&self) -> f64 {
+        let spin = |race: Race| (self[race].pose.orientation.inverse() * self[race].twist.angular_velocity).x;
+        spin(Race::Inner) - spin(Race::Outer)
+    }
+
+    /// [N m] torque that brings the losses of the bearing at its speed; 0 where it stands. At the start of a run its balls are in balance with their loads,
+    /// but not yet with friction along their orbits: what speeds them up or slows them down is in the moment on the races of that instant, and
+    /// in none of the torque that lasts.
+    pub fn torque_of_losses(&self) -> f64 {
+        let speed = self.relative_speed().abs();
+        if speed > 0.0 { self.losses.total() / speed } else { 0.0 }
     }
 }

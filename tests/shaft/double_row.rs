@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use roulement::catalogue::rows_of;
 use roulement::scene::Scene;
 use roulement::scene::system::SystemScene;
-use roulement::simulation::system::System;
+use roulement::simulation::system::{MachineEquilibrium, System};
 
 use crate::common::{held, run, scene, system};
 
@@ -117,6 +117,28 @@ fn consistency_balls_of_every_size_give_the_ratings_of_the_table() {
         }
     }
     assert!(rows_of("32206").is_none() && rows_of("7206 B").is_none());
+}
+
+#[test]
+fn independent_the_friction_torque_of_an_equilibrium_is_that_of_a_run() {
+    // Balls of a radially loaded row have contact angles of their own, and so speeds of their own: what friction does to them in the moment of the start is no
+    // torque that lasts. It drove the shaft, by twice as much as the bearing brakes it.
+    for text in [ALONE.to_string(), ALONE.replace("\"0 N\"", "\"500 N\"")] {
+        let found = MachineEquilibrium::of(system(&text).scene(), 0.0, 1.0).unwrap();
+        let torques: Vec<f64> = found.bearings.iter().map(|row| row.outputs.torque_of_losses()).collect();
+        let held = found.outputs.shafts[0].torque;
+        let sum: f64 = torques.iter().sum();
+        assert!(torques.iter().all(|torque| *torque > 0.0), "{torques:?}");
+        // Nothing else brakes it: loads go through its axis.
+        assert!((held / sum - 1.0).abs() < 0.02, "{held} {torques:?}");
+        let mut running = system(&text);
+        let mut mean = 0.0;
+        for look in 1..=40 {
+            running.advance(1e-3 * f64::from(look)).unwrap();
+            mean += if look > 20 { running.outputs().shafts[0].torque / 20.0 } else { 0.0 };
+        }
+        assert!((held / mean - 1.0).abs() < 0.25, "{held} {mean}");
+    }
 }
 
 #[test]

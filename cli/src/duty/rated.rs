@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use roulement::model::bodies::Race;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::Simulation;
 use roulement::simulation::machine::Machine;
@@ -63,34 +62,18 @@ pub fn with_lives(mut scene: MachineScene) -> Result<(MachineScene, Machine), St
     Ok((scene, machine))
 }
 
-/// [N m] torque that brings the losses of a bearing at its speed; 0 where it stands. At the start of a run its balls are in balance with their loads,
-/// but not yet with friction along their orbits: what speeds them up or slows them down is in the moment on the races of that instant, and
-/// in none of the torque that lasts.
-pub fn torque_of_losses(bearing: &Simulation) -> f64 {
-    let speed = speed(bearing);
-    if speed > 0.0 { bearing.outputs().losses.total() / speed } else { 0.0 }
-}
-
-/// [rad/s] speed of the races against each other.
-pub fn speed(bearing: &Simulation) -> f64 {
-    let outputs = bearing.outputs();
-    let spin =
-        |race: Race| (outputs[race].pose.orientation.inverse() * outputs[race].twist.angular_velocity).x;
-    (spin(Race::Inner) - spin(Race::Outer)).abs()
-}
-
 /// A ball bearing.
 fn of_balls(bearing: &Simulation, share: f64) -> Option<Rated> {
     let outputs = bearing.outputs();
     let life = outputs.life?;
     Some(Rated {
         share,
-        speed: speed(bearing),
+        speed: outputs.relative_speed().abs(),
         equivalent_load: life.equivalent_load,
         lives: [Some(life.reference), life.modified],
         safety: life.static_safety,
         exponent: 3.0,
-        torque: Some(torque_of_losses(bearing)),
+        torque: Some(outputs.torque_of_losses()),
         loss: Some(outputs.losses.total()),
     })
 }

@@ -247,11 +247,17 @@ fn bearings_that_a_machine_alone_has_are_machines_that_run() {
         ("K 30x35x27", "[bearing.rollers]", 2.6),
         ("3206 A", "catalogue = \"3206 A\"", 3.0),
         ("1206", "catalogue = \"1206\"", 1.6),
+        ("QJ 208", "catalogue = \"QJ 208\"", 5.6),
     ] {
         let output = roulement(&["bearing", name, "-o", &path]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let text = scratch.read("machine.toml");
-        let force = format!("force = [0, \"{} N\", 0]", 1e3 * load);
+        let size = format!("\"{} N\"", 1e3 * load);
+        // Four-point bearings are made for thrusts.
+        let force = match name.starts_with("QJ") {
+            true => format!("force = [{size}, 0, 0]"),
+            false => format!("force = [0, {size}, 0]"),
+        };
         assert!([part, &force].iter().all(|part| text.contains(part)), "{name}: {text}");
         let short = text.replace("duration = \"20 ms\"", "duration = \"0.5 ms\"");
         std::fs::write(&path, short).unwrap();

@@ -9,11 +9,10 @@ use serde_json::{Map, Value, json};
 use super::super::start::held_load;
 use super::critical_speeds::{Campbell, campbell};
 use super::linear::ShaftMode;
-use super::{LinkOutputs, System, SystemError, SystemOutputs};
+use super::{LinkOutputs, System, SystemError, SystemOutputs, steady_torque};
 use crate::analysis::condensed::Condensed;
 use crate::effects::rating::life_of_all;
 use crate::effects::reports::LifeOutput;
-use crate::model::bodies::Race;
 use crate::model::link::roller_friction::FrictionOutputs;
 use crate::model::link::rollers::RollerOutputs;
 use crate::scene::system::SystemScene;
@@ -72,10 +71,7 @@ impl MachineEquilibrium {
                     .map_err(|source| SystemError::Bearing { name: name.to_string(), source })?;
             let outputs = bearing.outputs().clone();
             let conditions = bearing.conditions();
-            let spin = |race: Race| {
-                (outputs[race].pose.orientation.inverse() * outputs[race].twist.angular_velocity).x
-            };
-            let speed = (spin(Race::Inner) - spin(Race::Outer)).abs();
+            let speed = outputs.relative_speed().abs();
             let hours = outputs.life.filter(|_| speed > 0.0).map(|life| {
                 let hours = |revolutions: f64| revolutions * 1e6 * TAU / speed / 3600.0;
                 [Some(hours(life.reference)), life.modified.map(hours)]
@@ -97,7 +93,7 @@ impl MachineEquilibrium {
             title: scene.title.clone(),
             links,
             shafts,
-            outputs: system.outputs().clone(),
+            outputs: steady_torque::outputs(&system),
             bearings,
             modes,
             campbell,
@@ -127,7 +123,7 @@ impl MachineEquilibrium {
                 "tilt": vector(&seat.tilt),
                 "stiffness": of.stiffness.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
                 "peak_pressure": of.peak_pressure(),
-                "friction_torque": of.outputs.friction_torque,
+                "friction_torque": of.outputs.torque_of_losses(),
                 "life": of.outputs.life.as_ref().map(|life| life_json(life, of.hours)),
                 "balls": {
                     "inner_load": column(&|k| balls[k].inner.load),
@@ -442,7 +438,7 @@ impl MachineEquilibrium {
             "{:<16} ball loads {least:.2} to {most:.2} N, pressure {:.1} MPa, friction torque {:.5} N m",
             "",
             of.peak_pressure() * 1e-6,
-            of.outputs.friction_torque
+            of.outputs.torque_of_losses()
         )?;
         if let Some(life) = &of.outputs.life {
             let [reference, modified] = of.hours.unwrap_or_default();
