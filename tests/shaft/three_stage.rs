@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use roulement::scene::system::SystemScene;
-use roulement::simulation::system::System;
+use roulement::simulation::system::{MachineEquilibrium, System};
 
 use crate::common::{imbalance, stored};
 
@@ -82,4 +82,17 @@ fn regression_a_ball_that_hardly_comes_is_solved_alone() {
     system.advance(5e-4).unwrap();
     let worked = system.bearings().next().unwrap().1.state().statistics.newton.iterations;
     assert!(worked > 1000 && worked < 4500, "{worked}");
+}
+
+#[test]
+fn closed_form_the_drive_brings_the_power_of_the_output_and_the_losses_of_all_bearings() {
+    let folder = Path::new(roulement_tests::ROOT).join("examples/gearbox");
+    let scene = SystemScene::load(&folder.join("three_stage.toml")).unwrap();
+    let found = MachineEquilibrium::of(&scene, 0.0, 1.0).unwrap();
+    let shafts = &found.outputs.shafts;
+    let out = shafts.last().unwrap();
+    let taken = (out.torque * out.spin.speed).abs();
+    let lost: f64 = found.bearings.iter().map(|bearing| bearing.outputs.losses.total()).sum();
+    let brought = shafts[0].torque * shafts[0].spin.speed;
+    assert!(lost > 1.0 && (brought / (taken + lost) - 1.0).abs() < 1e-3, "{brought} {taken} {lost}");
 }

@@ -4,20 +4,28 @@ use nalgebra::Vector3;
 
 use super::{System, SystemOutputs};
 use crate::model::bodies::Race;
+use crate::scene::system::mesh::{InTrain, trains};
 
 /// Outputs of a system that was just started, with the torques that shafts of given speed are held by where friction is that of its losses: balls are not
-/// yet in balance along their orbits ([`crate::simulation::outputs::Outputs::torque_of_losses`]).
+/// yet in balance along their orbits ([`crate::simulation::outputs::Outputs::torque_of_losses`]). Shafts of a train hand theirs on, by their ratio. (Their moments
+/// of that instant speed them up, as they twist those that twist: these are in no torque of a drive.)
 pub fn outputs(system: &System) -> SystemOutputs {
     let scene = system.scene();
     let mut outputs = system.outputs().clone();
+    let trains = trains(&scene.shafts, &scene.meshes, &scene.springs);
     for (mounted, (_, bearing)) in scene.bearings.iter().zip(system.bearings()) {
         let (of, along) = (bearing.outputs(), mounted.mounting.direction.sign());
         let steady = of.relative_speed().signum() * of.torque_of_losses();
         let rings = [(Race::Inner, Some(mounted.shaft), -steady), (Race::Outer, mounted.outer_shaft, steady)];
-        for (race, shaft, steady) in rings {
-            let now = of[race].wrench.moment.dot(&(of[race].pose.orientation * Vector3::x()));
-            if let Some(shaft) = shaft.filter(|shaft| scene.shafts[*shaft].speed.is_some()) {
-                outputs.shafts[shaft].torque += along * (now - steady);
+        for (race, shaft, steady) in
+            rings.into_iter().filter_map(|(race, shaft, steady)| Some((race, shaft?, steady)))
+        {
+            let InTrain { root, ratio } = trains[shaft];
+            if scene.shafts[root].speed.is_some() {
+                let feels_now = shaft == root && !scene.twists(shaft);
+                let axis = of[race].pose.orientation * Vector3::x();
+                let now = if feels_now { of[race].wrench.moment.dot(&axis) } else { 0.0 };
+                outputs.shafts[root].torque += ratio * along * (now - steady);
             }
         }
     }
