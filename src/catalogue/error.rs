@@ -24,7 +24,7 @@ pub enum CatalogueError {
     /// A name of a bearing that is not of balls in one row and one arc.
     #[error(
         "{name} is {kind}: only single-row deep-groove, angular-contact and single-direction thrust ball bearings are simulated ball by ball; a machine can have double-row \
-         angular contact ones of 32 and 33, self-aligning ones of 12, 13, 22 and 23, N, NU, NJ and NUP of the series 10, 2, 22, 3 and 23, tapered ones of 302, 303, 313, 320, 322, 323 and 330, and K with its three dimensions as catalogue \
+         angular contact ones of 32 and 33, self-aligning ones of 12, 13, 22 and 23, four-point ones of QJ 2 and QJ 3, N, NU, NJ and NUP of the series 10, 2, 22, 3 and 23, tapered ones of 302, 303, 313, 320, 322, 323 and 330, and K with its three dimensions as catalogue \
          of a [[bearing]], rollers of other sizes by [bearing.rollers], and any by its stiffness ([bearing.stiffness])"
     )]
     Kind {

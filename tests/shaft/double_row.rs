@@ -137,7 +137,8 @@ fn independent_the_friction_torque_of_an_equilibrium_is_that_of_a_run() {
             running.advance(1e-3 * f64::from(look)).unwrap();
             mean += if look > 20 { running.outputs().shafts[0].torque / 20.0 } else { 0.0 };
         }
-        assert!((held / mean - 1.0).abs() < 0.25, "{held} {mean}");
+        // Balls that a run has settled slip otherwise than those that just roll: by 16 % of the torque under a radial load alone, 2 % with a thrust.
+        assert!((held / mean - 1.0).abs() < 0.2, "{held} {mean}");
     }
 }
 

@@ -5,6 +5,7 @@
 //! that of the drive of each shaft, one of each motion that is given, that of the frame.
 
 mod derivatives;
+mod tuning;
 
 use std::sync::Arc;
 
@@ -20,15 +21,14 @@ use crate::interface::references::References;
 use crate::interface::variables::{Causality, MachineGroup, MachineVariables, Variable};
 use crate::model::bodies::Race;
 use crate::scene::machine::MachineScene;
-use crate::scene::system::{MountedScene, NamedLoad};
+use crate::scene::system::NamedLoad;
 use crate::scene::{Giver, Group, Groups, Level, Scene, SceneError, Solver};
 use crate::schema::GivenMotion;
-use crate::schema::numbers::four;
 use crate::simulation::alarms::Alarms;
 use crate::simulation::driven::{MachineInputs, MachineSnapshot};
 use crate::simulation::machine::{Machine, MachineError, follows_time};
 use crate::simulation::scripted_groups;
-use crate::simulation::system::{LevelJump, Played, System, drive_is_scripted};
+use crate::simulation::system::{Played, drive_is_scripted};
 
 /// Scripts of a bearing.
 const GROUPS: usize = Group::VARIANTS.len();
@@ -189,36 +189,6 @@ impl Unit {
     /// If it does not start there.
     pub fn set_start_time(&mut self, time: f64) -> Outcome {
         self.machine.set_start_time(time).map_err(|why| refused(&why))
-    }
-
-    /// Goes on with the tunable parameters among these values; says what bearings did that begin at another level.
-    ///
-    /// # Errors
-    /// If they contradict one another, or a bearing has no equilibrium to begin at.
-    pub fn tune(&mut self, values: &[f64]) -> Outcome<Vec<String>> {
-        let scene = self.scene_with(values)?;
-        let before: Vec<LevelJump> = self.level_jumps().map(|(_, jump)| *jump).collect();
-        self.machine.tune(&scene).map_err(|why| refused(&why))?;
-        self.scripts = scripts(&self.machine, &scene);
-        self.scene = Arc::new(scene);
-        let begun = self.level_jumps().zip(&before).filter(|((_, jump), before)| jump != before);
-        let time = self.time();
-        let said = begun.map(|((mounted, LevelJump { force, moment, .. }), _)| {
-            let level = if mounted.level() == Level::Dynamic { "dynamic" } else { "equilibrium" };
-            let (name, force, moment) = (&mounted.name, four(force), four(moment));
-            format!(
-                "bearing {name}: from {time} s on level = \"{level}\"; the force on its inner ring jumps by {force} N, the moment by {moment} N m"
-            )
-        });
-        Ok(said.collect())
-    }
-
-    /// The bearings of a machine, and what changes of their levels did.
-    fn level_jumps(&self) -> impl Iterator<Item = (&MountedScene, &LevelJump)> {
-        fn of(system: &System) -> impl Iterator<Item = (&MountedScene, &LevelJump)> {
-            system.scene().bearings.iter().zip(system.level_jumps())
-        }
-        self.machine.shaft().into_iter().flat_map(of)
     }
 
     /// Takes the inputs among these values, and their rates, for the next step or start.

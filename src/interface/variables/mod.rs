@@ -2,6 +2,7 @@
 //!
 //! Model description, value references, CSV headers and the documentation of a package all derive from it.
 
+mod level_rows;
 mod link_rows;
 mod machine;
 mod race_rows;

@@ -1,7 +1,7 @@
 //! The rows of a system's shaft and housings: loads and drive, turn, energies, and the motion of stations.
 
 use super::link_rows::{self, LinkRow};
-use super::{Causality, Kind, Source, Variable};
+use super::{Causality, Kind, Source, Variable, level_rows};
 use crate::effects::frame::FrameSection;
 use crate::scene::system::{NamedLoad, ShaftParameter, SystemScene};
 use crate::schema::variable_units::{self as units, Unit};
@@ -240,7 +240,7 @@ pub fn quoted(name: &str) -> String {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-fn row(
+pub(super) fn row(
     name: String,
     (unit, nominal): (Unit, f64),
     causality: Causality,
@@ -350,31 +350,7 @@ pub fn rows(scene: &SystemScene) -> Vec<Variable> {
     for index in 0..scene.housings.len() {
         housing(scene, index, &mut rows);
     }
-    for (index, bearing) in scene.bearings.iter().enumerate().filter(|(_, own)| own.dynamic.is_some()) {
-        let mut jump = |key: &str, unit, what: &str, get| {
-            let name = format!("{}.level.{key}", quoted(&bearing.name));
-            let source = ShaftSource::Jump(index, get);
-            rows.push(row(
-                name,
-                unit,
-                Causality::Output,
-                format!("{what} of bearing {}", bearing.name),
-                source,
-            ));
-        };
-        let one = (units::ONE, 1.0);
-        jump("changes", one, "changes of the level since the start", |jump| f64::from(jump.changes));
-        let on = "on the inner ring at the last change of the level";
-        jump("force_jump", (units::NEWTON, 1.0), &format!("size of the jump of the force {on}"), |jump| {
-            jump.force
-        });
-        jump(
-            "moment_jump",
-            (units::NEWTON_METRE, 1e-2),
-            &format!("size of the jump of the moment {on}"),
-            |jump| jump.moment,
-        );
-    }
+    rows.extend(level_rows::rows(scene));
     for (name, parameter) in scene.parameters() {
         let number = parameter.number;
         let nominal = if parameter.start == 0.0 { 1.0 } else { parameter.start.abs() };

@@ -59,7 +59,8 @@ fn both(bearing: &Value, catalogue: Catalogue) -> Result<Option<[Table; 2]>, Sce
         if let Some(seat) = seat.as_table_mut() {
             seat.insert("position".into(), (mounting.position.0 + along).into());
             seat.insert("direction".into(), direction.into());
-            if axial_play > 0.0 && !seat.contains_key("preload") {
+            let preload = &mounting.preload;
+            if axial_play > 0.0 && preload.force.is_none() && preload.displacement.is_none() {
                 let way = Table::from_iter([("displacement".to_owned(), Value::Float(-0.5 * axial_play))]);
                 seat.insert("preload".into(), way.into());
             }

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 use super::super::play::Scripted;
 use super::super::{Simulation, SimulationError, start};
 use super::inputs::{Given, Played, ShaftPaths};
-use super::start::started;
 use super::{System, SystemError, elements, loads};
 use crate::dynamics::system::StepBuffers;
 use crate::dynamics::system::elements::ElementJoint;
@@ -99,15 +98,10 @@ impl System {
         let paths = ShaftPaths::steady(&all.inputs, time, &turns);
         let given = Given { scene, paths: &paths, played: &Played::none(scene) };
         let loads = loads::at(&given, &all.carriers, &all.states, time, time);
-        let boundaries: Vec<_> = self.bearings.iter().map(|bearing| bearing.boundary(time)).collect();
-        let elements = all.element_steps(&self.bearings, &boundaries, 0.0);
-        let parts: Vec<_> = self.bearings.iter().filter(|bearing| !bearing.model.without_states).collect();
-        let mut states =
-            started(&all.carriers, &all.steps(&all.states, &loads), all.joined(&elements), &parts);
+        let mut states = self.started(&loads);
         for (state, before) in states.iter_mut().zip(&all.states) {
             state.energies = before.energies;
         }
-        drop((elements, parts));
         let solver = self.structures.solver;
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
         for bearing in &mut self.bearings {

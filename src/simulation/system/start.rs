@@ -12,7 +12,7 @@ use super::inputs::ShaftInputs;
 use super::pace::Pace;
 use super::{LevelJump, Structures, System, SystemError, SystemOutputs};
 use crate::analysis::auto;
-use crate::dynamics::system::{Joined, Joint, StepBuffers, StructureStep, StructureTrial};
+use crate::dynamics::system::{Joined, Joint, StepBuffers, StructureLoad, StructureStep, StructureTrial};
 use crate::model::link;
 use crate::model::state::Statistics;
 use crate::model::structure::{Carrier, Spin, StructureState};
@@ -68,34 +68,7 @@ impl System {
         bearings.iter_mut().for_each(Simulation::settle);
         let (elements, stepped) = elements::joints(scene, &joints, &mut bearings);
         let element_states = elements::started(&elements, &carriers, &states, &mut bearings);
-        let steps: Vec<_> = carriers
-            .iter()
-            .zip(&scales)
-            .zip(states.iter().zip(&loads))
-            .map(|((carrier, scales), (start, load))| StructureStep {
-                model: &carrier.structure,
-                scales,
-                start,
-                load,
-            })
-            .collect();
-        let boundaries: Vec<_> =
-            bearings.iter().map(|bearing| bearing.boundary(bearing.state.time)).collect();
-        let of_elements = elements::steps(&elements, &element_states, &bearings, &boundaries, 0.0);
-        let link_states: Vec<_> =
-            links.iter().map(|link| link.started(|structure| &states[structure])).collect();
-        let joined = Joined {
-            joints: &stepped,
-            links: &links,
-            link_states: &link_states,
-            elements: &of_elements,
-            solver: None,
-            of_links: None,
-        };
-        let of_parts: Vec<&Simulation> =
-            bearings.iter().filter(|bearing| !bearing.model.without_states).collect();
-        let states = started(&carriers, &steps, joined, &of_parts);
-        drop(of_elements);
+        let link_states = links.iter().map(|link| link.started(|structure| &states[structure])).collect();
         let solver = scene.solver();
         let control = StepControl::new(solver.initial_step.0, solver.min_step.0, solver.max_step.0);
         bearings.iter_mut().for_each(|bearing| bearing.state.control = control);
@@ -119,8 +92,19 @@ impl System {
             outputs: SystemOutputs::default(),
         };
         let mut system = Self { bearings, structures };
+        system.structures.states = system.started(&loads);
         system.together().report();
         Ok(system)
+    }
+
+    /// States of the structures as at a start: accelerations, torques and powers under these loads and what the bearings now do.
+    pub(super) fn started(&self, loads: &[StructureLoad]) -> Vec<StructureState> {
+        let all = &self.structures;
+        let boundaries: Vec<_> =
+            self.bearings.iter().map(|bearing| bearing.boundary(all.pace.time)).collect();
+        let elements = all.element_steps(&self.bearings, &boundaries, 0.0);
+        let bearings: Vec<_> = self.bearings.iter().filter(|bearing| !bearing.model.without_states).collect();
+        started(&all.carriers, &all.steps(&all.states, loads), all.joined(&elements), &bearings)
     }
 }
 
@@ -135,7 +119,7 @@ pub(super) fn found_out(scene: &SystemScene) -> Result<Cow<'_, SystemScene>, Sys
 }
 
 /// States of the structures where a run starts, with accelerations under what the bearings do.
-pub(super) fn started(
+fn started(
     carriers: &[Carrier],
     structures: &[StructureStep<'_>],
     joined: Joined<'_>,
