@@ -122,6 +122,29 @@ fn invariant_a_replay_over_changes_and_what_goes_on_from_a_snapshot_are_the_same
 }
 
 #[test]
+fn a_change_without_an_equilibrium_changes_nothing() {
+    let mut system = system(&changing("equilibrium"));
+    system.advance(1e-3).unwrap();
+    let before = system.snapshot();
+    let mut inputs: Vec<_> = system.bearings().map(|(_, bearing)| *bearing.inputs()).collect();
+    // No ball is in balance with a friction that is no number.
+    let friction = std::mem::replace(&mut inputs[0].friction, f64::NAN);
+    assert!(system.set_inputs(system.inputs().clone(), inputs.clone()));
+    let mut scene = system.scene().clone();
+    scene.bearings[0].dynamic = Some(1.0);
+    let why = system.tune(&scene).unwrap_err().to_string();
+    assert!(why.contains("bearing \"left\""), "{why}");
+    assert_eq!((system.level_jumps()[0].changes, system.scene().bearings[0].dynamic), (0, Some(0.0)));
+    inputs[0].friction = friction;
+    assert!(system.set_inputs(system.inputs().clone(), inputs));
+    assert_eq!(system.snapshot(), before);
+    // It changes when it can.
+    set(&mut system, 1.0);
+    system.advance(1.2e-3).unwrap();
+    assert_eq!(system.level_jumps()[0].changes, 1);
+}
+
+#[test]
 fn refused_where_a_level_cannot_change() {
     let refusal = |text: &str| SystemScene::edited(text).map(drop).unwrap_err().to_string();
     let own = "creep = \"saturated\", heathcote_slip = false";
