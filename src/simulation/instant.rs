@@ -109,10 +109,11 @@ impl Instant {
             contacts.balls.iter().map(|of_ball| of_ball.raceways[race].friction_power).sum::<f64>() / count
         };
         let [inner, outer] = Race::BOTH.map(|race| RaceOutput::new(state, model, race));
+        let losses = Losses::of(model, state, contacts, (&models, &races), &totals);
         Self {
             time: state.time,
-            friction_torque: friction_torque(state),
-            losses: Losses::of(model, state, contacts, (&models, &races), &totals),
+            friction_torque: friction_torque(model, state, || losses),
+            losses,
             torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
             // Most steps look at it.
             stored_energy: match model.solver.energy_error > 0.0 {

@@ -53,6 +53,12 @@ impl Losses {
             support,
         }
     }
+
+    /// [N m] torque that brings them at a speed [rad/s]; 0 where nothing turns.
+    pub(super) fn torque(&self, speed: f64) -> f64 {
+        let speed = speed.abs();
+        if speed > 0.0 { self.total() / speed } else { 0.0 }
+    }
 }
 
 impl Outputs {
@@ -66,7 +72,6 @@ impl Outputs {
     /// but not yet with friction along their orbits: what speeds them up or slows them down is in the moment on the races of that instant, and
     /// in none of the torque that lasts.
     pub fn torque_of_losses(&self) -> f64 {
-        let speed = self.relative_speed().abs();
-        if speed > 0.0 { self.losses.total() / speed } else { 0.0 }
+        self.losses.torque(self.relative_speed())
     }
 }

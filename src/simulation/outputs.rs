@@ -30,6 +30,7 @@ use crate::model::cage::CageModel;
 use crate::model::state::{BallState, BodyState, State, Statistics};
 use crate::model::{Conditions, Model};
 use crate::numerics::motion::{Pose, Twist, Wrench};
+use crate::scene::Level;
 
 /// A race.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +108,7 @@ pub struct Outputs {
     pub warm: Option<Warm>,
     /// Flexible supports of inner and outer race, where they rest on some.
     pub supports: [Option<SupportState>; 2],
-    /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis.
+    /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis; of an equilibrium, that of its losses.
     pub friction_torque: f64,
     /// \[J] kinetic and elastic energy.
     pub stored_energy: f64,
@@ -194,7 +195,7 @@ impl Outputs {
             margins,
             time: state.time,
             torque_power: inner.drive_torque * speeds[0] + outer.drive_torque * speeds[1],
-            friction_torque: friction_torque(state),
+            friction_torque: friction_torque(model, state, || losses),
             inner,
             outer,
             balls,
@@ -345,8 +346,13 @@ fn along_orbit(race: &RaceMotion<f64>, offset: &Vector3<f64>, vector: &Vector3<f
     Vector3::new(vector.dot(axis), vector.dot(&radial), vector.dot(&axis.cross(&radial)))
 }
 
-/// [N m] friction torque of a state: against the inner race's rotation about its own axis.
-pub(super) fn friction_torque(state: &State) -> f64 {
+/// [N m] friction torque of a state: against the inner race's rotation about its own axis; of an equilibrium, what brings its losses
+/// ([`Outputs::torque_of_losses`]).
+pub(super) fn friction_torque(model: &Model, state: &State, losses: impl FnOnce() -> Losses) -> f64 {
+    if model.solver.level == Level::Equilibrium {
+        let [inner, outer] = Race::BOTH.map(|race| state.race(race).rate.x);
+        return losses().torque(inner - outer);
+    }
     let inner = state.race(Race::Inner);
     let against = -inner.bearing_wrench.moment.dot(&inner.motion().axis);
     if inner.rate.x < 0.0 { -against } else { against }

@@ -91,7 +91,7 @@ impl Simulation {
 
     /// [N m] friction torque at the last communication point: [`Outputs::friction_torque`].
     pub fn friction_torque(&self) -> f64 {
-        friction_torque(&self.state)
+        friction_torque(&self.model, &self.state, || self.sums().losses)
     }
 
     /// A race at the last communication point. It takes no contacts, as other outputs do.

@@ -3,7 +3,7 @@
 
 use super::point::Point;
 use super::script::Script;
-use super::system::{Played, Structures};
+use super::system::{Played, Structures, steady_torque};
 use super::{Simulation, SimulationError};
 use crate::dynamics::system::{StepBuffers, StructureLoad};
 use crate::dynamics::{Boundary, Workspace};
@@ -117,8 +117,12 @@ impl Together<'_> {
     pub fn report(&mut self) {
         self.see_races();
         let time = self.time();
+        let in_balance = self.is_quasi_static();
         if let Some(structures) = &mut self.structures {
             structures.report(time);
+            if in_balance {
+                steady_torque::hold(self.bearings, structures);
+            }
         }
     }
 

@@ -163,7 +163,11 @@ def test_a_package_of_equilibria_is_that_of_the_command(tmp_path):
         time += step
         scene = tmp_path / "there.toml"
         scene.write_text(TEXT.replace("1260.5", str(force)))
-        wanted = json.loads(roulement("equilibrium", scene, "--json").stdout)["bearings"]
+        told = json.loads(roulement("equilibrium", scene, "--json").stdout)
+        wanted = told["bearings"]
+        # What holds the shaft at its speed has the losses of both bearings, as there.
+        torque = shaft.get("shaft.torque")[0]
+        assert math.isclose(torque, told["shafts"]["shaft"]["torque"], rel_tol=1e-5), (force, torque)
         for side in ("left", "right"):
             found = shaft.get(*(f"{side}.seat.displacement.{axis}" for axis in "xyz"), f"{side}.friction_torque")
             of = wanted[side]

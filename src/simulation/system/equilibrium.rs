@@ -59,7 +59,7 @@ impl MachineEquilibrium {
     /// # Errors
     /// If there is none.
     pub fn of(scene: &SystemScene, time: f64, up_to: f64) -> Result<Self, SystemError> {
-        let system = System::starting_at(scene, time)?;
+        let mut system = System::starting_at(scene, time)?;
         let campbell = campbell(scene, time, up_to)?;
         let modes = system.modes()?.unwrap_or_default();
         let bearings = system.bearings().zip(&scene.bearings).map(|((name, bearing), mounted)| {
@@ -87,13 +87,14 @@ impl MachineEquilibrium {
         });
         let bearings = bearings.collect::<Result<_, SystemError>>()?;
         let shafts = scene.shafts.iter().map(|shaft| shaft.name.clone()).collect();
+        steady_torque::hold(&system.bearings, &mut system.structures);
         let by_stiffness = scene.springs.iter().filter(|spring| !spring.is_coupling()).count();
         let links = (scene.link_names().map(String::from).collect(), [scene.meshes.len(), by_stiffness]);
         Ok(Self {
             title: scene.title.clone(),
             links,
             shafts,
-            outputs: steady_torque::outputs(&system),
+            outputs: system.structures.outputs,
             bearings,
             modes,
             campbell,

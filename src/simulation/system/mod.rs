@@ -17,7 +17,7 @@ mod quasi_static;
 mod snapshot;
 mod start;
 mod statics;
-mod steady_torque;
+pub(super) mod steady_torque;
 mod structures;
 
 use std::sync::Arc;

@@ -2,18 +2,23 @@
 
 use nalgebra::Vector3;
 
-use super::{System, SystemOutputs};
+use super::Structures;
 use crate::model::bodies::Race;
 use crate::scene::system::mesh::{InTrain, trains};
+use crate::simulation::Simulation;
 
-/// Outputs of a system that was just started, with the torques that shafts of given speed are held by where friction is that of its losses: balls are not
+/// Gives outputs of structures that were just started the torques that shafts of given speed are held by where friction is that of its losses: balls are not
 /// yet in balance along their orbits ([`crate::simulation::outputs::Outputs::torque_of_losses`]). Shafts of a train hand theirs on, by their ratio. (Their moments
 /// of that instant speed them up, as they twist those that twist: these are in no torque of a drive.)
-pub fn outputs(system: &System) -> SystemOutputs {
-    let scene = system.scene();
-    let mut outputs = system.outputs().clone();
+pub fn hold(bearings: &[Simulation], structures: &mut Structures) {
+    let Structures { scene, states, outputs, .. } = structures;
     let trains = trains(&scene.shafts, &scene.meshes, &scene.springs);
-    for (mounted, (_, bearing)) in scene.bearings.iter().zip(system.bearings()) {
+    for (shaft, state) in states.iter().enumerate().take(scene.shafts.len()) {
+        if scene.shafts[shaft].speed.is_some() {
+            outputs.shafts[shaft].torque = state.torque;
+        }
+    }
+    for (mounted, bearing) in scene.bearings.iter().zip(bearings) {
         let (of, along) = (bearing.outputs(), mounted.mounting.direction.sign());
         let steady = of.relative_speed().signum() * of.torque_of_losses();
         let rings = [(Race::Inner, Some(mounted.shaft), -steady), (Race::Outer, mounted.outer_shaft, steady)];
@@ -29,5 +34,4 @@ pub fn outputs(system: &System) -> SystemOutputs {
             }
         }
     }
-    outputs
 }
