@@ -76,14 +76,24 @@ impl Mul<&DVector<f64>> for &Sparse {
         let size = self.dense.nrows();
         assert_eq!(x.len(), size, "rows of a vector");
         let mut product = vec![0.0; size.next_multiple_of(TOGETHER)];
-        let rows = product.as_chunks_mut::<TOGETHER>().0;
-        for (groups, x) in self.columns().zip(x) {
-            for Group { at, entries } in groups {
-                rows[*at].iter_mut().zip(entries).for_each(|(row, entry)| *row += entry * x);
-            }
-        }
+        add_columns(&self.groups, &self.ends, x.as_slice(), product.as_chunks_mut::<TOGETHER>().0);
         product.truncate(size);
         DVector::from_vec(product)
+    }
+}
+
+/// Adds each column times its factor to rows. Compiled twice, as contacts are ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn add_columns(groups: &[Group], ends: &[usize], factors: &[f64], rows: &mut [[f64; TOGETHER]]) {
+    let mut from = 0;
+    for (end, factor) in ends.iter().zip(factors) {
+        for Group { at, entries } in &groups[from..*end] {
+            let row = &mut rows[*at];
+            for k in 0..TOGETHER {
+                row[k] += entries[k] * factor;
+            }
+        }
+        from = *end;
     }
 }
 

@@ -26,9 +26,9 @@ const MAX_ROUNDS: u32 = 12;
 /// [-] unbalanced force over the loads at work up to which a search goes on from where the ball was.
 const NEAR: f64 = 0.3;
 /// [-] unbalanced force over the loads at work that is rounding.
-const TOLERANCE: f64 = 1e-12;
+pub(super) const TOLERANCE: f64 = 1e-12;
 /// [-] units in the last place of a ball's coordinates that are rounding.
-const ROUND_OFF_UNITS: f64 = 8.0;
+pub(super) const ROUND_OFF_UNITS: f64 = 8.0;
 /// Halvings of a step of Newton's method.
 const MAX_HALVINGS: u32 = 30;
 
@@ -106,12 +106,12 @@ pub struct Settled {
 
 /// Both contacts at a place.
 #[derive(Clone, Copy)]
-struct Contacts {
-    normals: [Vector2<f64>; 2],
-    distances: [f64; 2],
-    loads: [f64; 2],
-    slopes: [f64; 2],
-    elastic: f64,
+pub(super) struct Contacts {
+    pub normals: [Vector2<f64>; 2],
+    pub distances: [f64; 2],
+    pub loads: [f64; 2],
+    pub slopes: [f64; 2],
+    pub elastic: f64,
 }
 
 impl Contacts {
@@ -261,6 +261,17 @@ impl Ball {
             let approach = (distances[k] - S::constant(arc)).positive_part();
             (approach * approach.sqrt()).scale(stiffness)
         });
+        self.carried(couple, &normals, &loads)
+    }
+
+    /// The same of contacts with these normals and loads \[N].
+    #[inline(always)]
+    pub(super) fn carried<S: Scalar>(
+        &self,
+        couple: &Couple,
+        normals: &[[S; 2]; 2],
+        loads: &[S; 2],
+    ) -> [[S; 2]; 2] {
         let total = loads[0] + loads[1] + S::constant(f64::MIN_POSITIVE);
         let needed = normals[1][0].scale(couple.force);
         let limit = total.scale(couple.friction) + S::constant(1e-12);
@@ -273,7 +284,8 @@ impl Ball {
         })
     }
 
-    fn settled(&self, place: Vector2<f64>, at: &Contacts, friction: [Vector2<f64>; 2]) -> Settled {
+    /// The ball at a place.
+    pub(super) fn settled(&self, place: Vector2<f64>, at: &Contacts, friction: [Vector2<f64>; 2]) -> Settled {
         let normal = at.normals[0];
         let contacts = normal * at.loads[0] + at.normals[1] * at.loads[1];
         let unbalanced = (Vector2::new(0.0, self.centrifugal) + friction[0] + friction[1] - contacts).norm();

@@ -7,10 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::ball::{Ball, Couple, Groove, Settled};
 use super::rings::{Circle, Crossing, Placed, as_turned, turned};
+use super::together::Found;
 use crate::contact::ContactModel;
 use crate::contact::normal::Damping;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::{Conditions, Model};
+use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Rounds in which stiffnesses follow contact angles where a bearing is placed anew.
 const PLACING_ROUNDS: u32 = 4;
@@ -74,6 +76,8 @@ pub struct Tangents {
 pub struct Balls {
     count: usize,
     first_azimuth: f64,
+    /// [-] cosine and sine of the angle from one to the next.
+    spacing: [f64; 2],
     /// Circles of groove centres.
     circles: [Circle; 2],
     ball: Ball,
@@ -102,8 +106,10 @@ impl Balls {
             friction: conditions.friction,
         };
         let groove = |arc: f64| Groove { arc, stiffness: 0.0 };
+        let (sine, cosine) = (TAU / bearing.n_balls as f64).sin_cos();
         Self {
             count: bearing.n_balls,
+            spacing: [cosine, sine],
             first_azimuth: bearing.first_ball_azimuth,
             circles: [inner.0, outer_race.0],
             ball: Ball {
@@ -135,6 +141,34 @@ impl Balls {
         ball
     }
 
+    /// Tells of each ball in balance, from where it was, and of where the inner ring's circle goes through its plane.
+    fn settle(
+        &self,
+        motion: &RingMotion,
+        rested: &[Rested],
+        mut see: impl FnMut(usize, &Crossing, &Settled),
+    ) {
+        let (sine, cosine) = self.azimuth(0, motion.turn[0]).sin_cos();
+        let mut direction = [cosine, sine];
+        let [cosine, sine] = self.spacing;
+        let mut next = |_| {
+            let [c, s] = direction;
+            direction = [c * cosine - s * sine, s * cosine + c * sine];
+            [c, s]
+        };
+        for (group, rested) in rested.chunks(WIDTH).enumerate() {
+            let directions: [[f64; 2]; WIDTH] = std::array::from_fn(&mut next);
+            let [cosines, sines] = [0, 1].map(|k: usize| Lanes::from_fn(|lane| directions[lane][k]));
+            let crossings = Crossing::of_group(cosines, sines, &motion.placed, &self.circles);
+            let found = Found::near(&self.ball, rested, &crossings);
+            for (lane, (rested, crossing)) in rested.iter().zip(&crossings).enumerate() {
+                let alone = || self.ball(rested).settle(&crossing.place, &rested.place, &rested.friction);
+                let settled = found.settled(&self.ball, lane).unwrap_or_else(alone);
+                see(WIDTH * group + lane, crossing, &settled);
+            }
+        }
+    }
+
     /// Forces on the inner ring, from where its balls were; `see` is told of each ball.
     pub fn forces(
         &self,
@@ -145,9 +179,7 @@ impl Balls {
         let mut sum = Forces::default();
         let backwards = as_turned(&motion.placed);
         let seen = motion.twist - backwards * motion.turn[1];
-        for (index, rested) in rested.iter().enumerate() {
-            let crossing = Crossing::at(self.azimuth(index, motion.turn[0]), &motion.placed, &self.circles);
-            let settled = self.ball(rested).settle(&crossing.place, &rested.place, &rested.friction);
+        self.settle(motion, rested, |index, crossing, settled| {
             sum.elastic += settled.elastic;
             if settled.loads[0] > 0.0 {
                 let mut force = settled.force;
@@ -160,8 +192,8 @@ impl Balls {
                 }
                 sum.wrench += crossing.wrench(&force);
             }
-            see(index, &crossing, &settled);
-        }
+            see(index, crossing, settled);
+        });
         sum.turning = -backwards.dot(&sum.wrench);
         sum
     }

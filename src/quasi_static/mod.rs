@@ -12,3 +12,4 @@
 pub mod ball;
 pub mod bearing;
 pub mod rings;
+mod together;

@@ -11,7 +11,8 @@
 
 use nalgebra::{Matrix2, Matrix2x6, Matrix3, Matrix6, RowVector6, Vector2, Vector3, Vector6};
 
-use crate::model::bearing::azimuth_directions;
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::scalar::Scalar;
 
 /// A circle on a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,32 +49,60 @@ pub struct Crossing {
     radius: f64,
 }
 
+/// Where a circle goes through planes.
+struct Crossed {
+    point: Vector3<Lanes>,
+    outward: Vector3<Lanes>,
+    tangent: Vector3<Lanes>,
+}
+
+/// Where the inner ring's circle goes through planes at azimuths. Compiled twice, as contacts are ([`crate::contact::many`]).
+#[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
+fn cross(cosines: Lanes, sines: Lanes, ring: &Placed, circle: &Circle) -> Crossed {
+    let constant = |v: &Vector3<f64>| v.map(Lanes::constant);
+    let (axis, centre) = (constant(&ring.axis), constant(&(ring.position + ring.axis * circle.offset)));
+    let zero = Lanes::constant(0.0);
+    let (radial, across) = (Vector3::new(zero, cosines, sines), Vector3::new(zero, -sines, cosines));
+    let along_plane = radial - axis * radial.dot(&axis);
+    let u = along_plane / along_plane.dot(&along_plane).sqrt();
+    let v = axis.cross(&u);
+    // `t.(centre + R (cos u + sin v)) = 0`
+    let (along, beside) = (across.dot(&v), across.dot(&u));
+    let off = across.dot(&centre) / Lanes::constant(circle.radius);
+    let rest = |sine: Lanes| Lanes::one_minus(sine * sine).sqrt();
+    let mut sine = -off / along;
+    for _ in 0..2 {
+        sine = -(off + beside * rest(sine)) / along;
+    }
+    let cosine = rest(sine);
+    let outward = u * cosine + v * sine;
+    let point = centre + outward * Lanes::constant(circle.radius);
+    Crossed { point, outward, tangent: v * cosine - u * sine }
+}
+
 impl Crossing {
-    /// At an azimuth \[rad], for the circles of the inner and the outer ring.
-    pub fn at(azimuth: f64, ring: &Placed, [inner, outer]: &[Circle; 2]) -> Self {
-        let (radial, across) = azimuth_directions(azimuth);
-        let axis = &ring.axis;
-        let centre = ring.position + axis * inner.offset;
-        let u = (radial - axis * radial.dot(axis)).normalize();
-        let v = axis.cross(&u);
-        // `t.(centre + R (cos u + sin v)) = 0`
-        let (along, beside) = (across.dot(&v), across.dot(&u));
-        let off = across.dot(&centre) / inner.radius;
-        let mut sine = -off / along;
-        for _ in 0..2 {
-            sine = -(off + beside * (1.0 - sine * sine).sqrt()) / along;
-        }
-        let cosine = (1.0 - sine * sine).sqrt();
-        let outward = u * cosine + v * sine;
-        let point = centre + outward * inner.radius;
-        Self {
-            directions: [radial, across],
-            place: Vector2::new(point.x - outer.offset, point.dot(&radial) - outer.radius),
-            arm: point - ring.position,
-            outward,
-            tangent: v * cosine - u * sine,
-            radius: inner.radius,
-        }
+    /// In the planes of elements, for the circles of the inner and the outer ring; cosines and sines of their azimuths are given.
+    pub fn of_group(
+        cosines: Lanes,
+        sines: Lanes,
+        ring: &Placed,
+        [inner, outer]: &[Circle; 2],
+    ) -> [Self; WIDTH] {
+        let crossed = cross(cosines, sines, ring, inner);
+        std::array::from_fn(|lane| {
+            let vector = |v: &Vector3<Lanes>| v.map(|component| component.0[lane]);
+            let (cosine, sine) = (cosines.0[lane], sines.0[lane]);
+            let radial = Vector3::new(0.0, cosine, sine);
+            let point = vector(&crossed.point);
+            Self {
+                directions: [radial, Vector3::new(0.0, -sine, cosine)],
+                place: Vector2::new(point.x - outer.offset, point.dot(&radial) - outer.radius),
+                arm: point - ring.position,
+                outward: vector(&crossed.outward),
+                tangent: vector(&crossed.tangent),
+                radius: inner.radius,
+            }
+        })
     }
 
     /// [-] how far the tangent leans out of the direction across the plane.

@@ -165,7 +165,7 @@ pub fn try_step(
         }
         accept(model, state, boundary, (h, &step), (workspace, end));
     }
-    Ok(structures.iter().zip(trials).map(|(one, trial)| finished(one, trial.end, h)).collect())
+    Ok(structures.iter().zip(trials).map(|(one, trial)| finished(one, trial.ended(one.model), h)).collect())
 }
 
 /// Work of the solves of a step, and their buffers.
@@ -235,7 +235,7 @@ impl StepBuffers {
     }
 }
 
-/// The state of a structure after a step: its energies summed.
+/// The state of a structure after a step, where what it stores is known: its energies summed.
 fn finished(one: &StructureStep<'_>, mut end: StructureState, h: f64) -> StructureState {
     let (before, after) = (&one.start.powers, &end.powers);
     let integral = |before: f64, after: f64| 0.5 * h * (before + after);
@@ -246,7 +246,7 @@ fn finished(one: &StructureStep<'_>, mut end: StructureState, h: f64) -> Structu
         worked: energies.worked + input.abs(),
         bearings: energies.bearings + integral(before.bearings, after.bearings),
         damping: energies.damping + integral(before.damping, after.damping),
-        stored: one.model.stored(&end.coordinates, &end.rates, &end.spin),
+        stored: end.energies.stored,
         at_start: energies.at_start,
     };
     end

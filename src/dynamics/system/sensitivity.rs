@@ -81,7 +81,9 @@ pub fn advance_perturbed<'a>(
             *unknown += solved;
         }
         equations.residual(&unknowns, false);
-        let trials: Vec<_> = equations.trials.iter().map(|trial| trial.end.clone()).collect();
+        let ended =
+            equations.trials.iter().zip(&structures).map(|(trial, one)| trial.clone().ended(one.model));
+        let trials: Vec<_> = ended.collect();
         let of_bearings = equations.bearing_ends(h, None);
         drop(equations);
         let parts = bearings.iter().zip(&mut states).zip(boundaries).zip(aside.iter_mut());

@@ -376,7 +376,9 @@ impl Equations for SystemStep<'_> {
         }
         prepare_correction(&mut self.bearings);
         // Balls that were brought back press differently.
-        self.assemble_structures();
+        if !self.bearings.is_empty() {
+            self.assemble_structures();
+        }
         let assembled = match self.bearings.is_empty() {
             true => Some(self.asked),
             false => Some(self.bearings.iter().map(|step| step.assembled).sum()),

@@ -7,7 +7,7 @@ use crate::effects::moving_frame::MovingFrame;
 use crate::model::link::LinkEnd;
 use crate::model::state::stack;
 use crate::model::structure::{
-    FrameForce, Map, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
+    FrameForce, Map, OwnForces, Spin, Structure, StructureEnergies, StructurePowers, StructureState, Turning,
 };
 use crate::numerics::hermite::Hermite;
 use crate::numerics::hht::HhtStep;
@@ -138,6 +138,10 @@ pub struct StructureTrial {
     from_bearings: DVector<f64>,
     /// [N m] moment of them about its axis.
     axial: f64,
+    /// Forces of the structure itself where it is.
+    own: OwnForces,
+    /// `M q''` there.
+    inertia: DVector<f64>,
     /// Inertial forces of a frame that turns.
     from_frame: Option<FrameForce>,
 }
@@ -146,7 +150,15 @@ impl StructureTrial {
     /// Buffers, as at the start of a step.
     pub fn new(start: &StructureState) -> Self {
         let zero = DVector::zeros(start.coordinates.len());
-        Self { end: start.clone(), residual: zero.clone(), from_bearings: zero, axial: 0.0, from_frame: None }
+        Self {
+            end: start.clone(),
+            residual: zero.clone(),
+            from_bearings: zero,
+            axial: 0.0,
+            own: OwnForces::default(),
+            inertia: DVector::default(),
+            from_frame: None,
+        }
     }
 
     /// Moves the structure to the end of the step.
@@ -167,6 +179,16 @@ impl StructureTrial {
             + (before * (0.5 - step.beta) + after * step.beta) * (step.h * step.h);
         model.hold(end, &load.held);
         end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], load.spin);
+        self.act(model, load);
+        self.inertia = &model.mass * &self.end.accelerations;
+    }
+
+    /// What the structure and its frame do where it is, whatever bearings and links do.
+    fn act(&mut self, model: &Structure, load: &StructureLoad) {
+        let StructureState { coordinates, rates, spin, .. } = &self.end;
+        self.own = model.own_forces(coordinates, rates, spin);
+        self.from_frame =
+            load.frame.as_ref().map(|frame| model.frame_force(frame, [coordinates, rates], spin));
     }
 
     /// Motion of a seat at the end of the step.
@@ -208,8 +230,7 @@ impl StructureTrial {
         self.sum_forces(model, load);
         let end = &mut self.end;
         self.residual =
-            &model.mass * &end.accelerations - &end.total * fraction - &start.total * step.alpha_f
-                + &start.remainder;
+            &self.inertia - &end.total * fraction - &start.total * step.alpha_f + &start.remainder;
         model.held.iter().for_each(|k| self.residual[*k] = 0.0);
         end.remainder.copy_from(&self.residual);
         self.account(model, load);
@@ -217,6 +238,7 @@ impl StructureTrial {
 
     /// The state where a run starts: accelerations, torque and powers under what acts from outside and the bearings.
     pub fn started(mut self, model: &Structure, load: &StructureLoad) -> StructureState {
+        self.act(model, load);
         self.sum_forces(model, load);
         let end = &mut self.end;
         // The ground has no coordinates where no ring slides.
@@ -226,7 +248,7 @@ impl StructureTrial {
         end.spin = model.spin([&end.coordinates, &end.rates, &end.accelerations], end.spin);
         self.account(model, load);
         let mut end = self.end;
-        let stored = model.stored(&end.coordinates, &end.rates, &end.spin);
+        let stored = model.stored(&self.own, &end.coordinates, &end.rates, &end.spin);
         end.energies = StructureEnergies { stored, at_start: stored, ..StructureEnergies::default() };
         end
     }
@@ -249,6 +271,7 @@ impl StructureTrial {
         at.rates = between.linear([v0, v1]);
         model.hold(at, &load.held);
         at.spin = model.spin([&at.coordinates, &at.rates, &at.accelerations], load.spin);
+        trial.act(model, load);
         trial
     }
 
@@ -256,22 +279,26 @@ impl StructureTrial {
     pub fn settled(mut self, model: &Structure, load: &StructureLoad) -> StructureState {
         self.sum_forces(model, load);
         self.account(model, load);
+        self.ended(model)
+    }
+
+    /// State at the end with the energy that is stored there.
+    pub fn ended(mut self, model: &Structure) -> StructureState {
+        let StructureState { coordinates, rates, spin, .. } = &self.end;
+        self.end.energies.stored = model.stored(&self.own, coordinates, rates, spin);
         self.end
     }
 
     /// Total force.
     fn sum_forces(&mut self, model: &Structure, load: &StructureLoad) {
         let end = &mut self.end;
-        let own = model.own_forces(&end.coordinates, &end.rates, &end.spin);
-        end.total = &load.force + &self.from_bearings + own;
-        let turned = |frame| model.frame_force(frame, [&end.coordinates, &end.rates], &end.spin);
-        self.from_frame = load.frame.as_ref().map(turned);
+        end.total = &load.force + &self.from_bearings + &self.own.total;
         if let Some(frame) = &self.from_frame {
             end.total += &frame.force;
         }
         if model.turning == Turning::Free {
             let last = model.size() - 1;
-            let lag = model.spin_torque(&end.coordinates, &end.accelerations, &Spin::default());
+            let lag = model.spin_torque(&self.own, &end.accelerations, &Spin::default());
             end.total[last] -= lag;
         }
     }
@@ -292,7 +319,7 @@ impl StructureTrial {
             power += frame.force.dot(&end.rates);
         }
         end.torque = match turns {
-            true => model.spin_torque(&end.coordinates, &end.accelerations, &end.spin) - self.axial - outside,
+            true => model.spin_torque(&self.own, &end.accelerations, &end.spin) - self.axial - outside,
             false => 0.0,
         };
         let drive = if turns { (end.torque + outside) * end.spin.speed } else { 0.0 };
@@ -300,7 +327,7 @@ impl StructureTrial {
         end.powers = StructurePowers {
             input: power + drive,
             bearings: -(self.from_bearings.dot(&end.rates) + of_spin),
-            damping: end.rates.dot(&(&model.damping * &end.rates)),
+            damping: self.own.damped(&end.rates),
         };
     }
 

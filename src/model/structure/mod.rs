@@ -11,6 +11,7 @@ mod beam;
 mod held;
 mod housing;
 mod lump;
+mod own_forces;
 mod reduction;
 mod ring;
 mod shaft;
@@ -18,6 +19,7 @@ mod torsion;
 
 pub use lump::{FrameForce, Lump, frame_matrices};
 use nalgebra::{DVector, Dyn, OMatrix, U6, Vector3};
+pub use own_forces::OwnForces;
 pub use ring::Ring;
 use serde::{Deserialize, Serialize};
 
@@ -234,38 +236,5 @@ impl Structure {
             }
             Turning::Still | Turning::Given => given,
         }
-    }
-
-    /// Forces of the structure itself: damping, gyroscopic, elastic, and those of a spin that changes.
-    pub fn own_forces(&self, q: &DVector<f64>, rates: &DVector<f64>, spin: &Spin) -> DVector<f64> {
-        let gyroscopic = rates * spin.speed + q * (0.5 * spin.acceleration);
-        let mut force = -(&self.damping * rates) - &self.stiffness * q - &self.gyroscopic * &gyroscopic;
-        match self.turning {
-            Turning::Free => {}
-            Turning::Still | Turning::Given => force -= &self.by_spin * spin.acceleration,
-        }
-        force
-    }
-
-    /// [N m] inertial torque of the coordinates and the spin about the x axis.
-    pub fn spin_torque(&self, q: &DVector<f64>, accelerations: &DVector<f64>, spin: &Spin) -> f64 {
-        self.polar_inertia * spin.acceleration
-            + self.by_spin.dot(accelerations)
-            + 0.5 * accelerations.dot(&(&self.gyroscopic * q))
-    }
-
-    /// \[J] kinetic and elastic energy.
-    pub fn stored(&self, q: &DVector<f64>, rates: &DVector<f64>, spin: &Spin) -> f64 {
-        let own_spin = match self.turning {
-            // Its inertia is in the mass matrix.
-            Turning::Free => 0.0,
-            Turning::Still | Turning::Given => {
-                spin.speed * (0.5 * self.polar_inertia * spin.speed + self.by_spin.dot(rates))
-            }
-        };
-        0.5 * rates.dot(&(&self.mass * rates))
-            + 0.5 * q.dot(&(&self.stiffness * q))
-            + 0.5 * spin.speed * rates.dot(&(&self.gyroscopic * q))
-            + own_spin
     }
 }
