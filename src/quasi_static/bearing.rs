@@ -273,20 +273,53 @@ impl Balls {
         })
     }
 
-    /// \[m] centre of a ball from the outer ring's origin, in the axes of that, at an azimuth \[rad]; and its angular velocity [rad/s] as it rolls,
-    /// without spin on the outer ring, at speeds of cage and outer ring [rad/s].
+    /// [rad/s] angular velocities of a ball, axial and radial, as it rolls without spin on the inner and on the outer ring, at speeds of cage, inner
+    /// and outer ring [rad/s].
+    fn rolls(&self, rested: &Rested, [cage, inner, outer]: [f64; 3]) -> [Vector2<f64>; 2] {
+        let per_roll = (self.circles[1].radius + rested.place.y) / self.radius;
+        let on = |arm: Vector2<f64>, speed: f64| {
+            let (normal, roll) = (arm.normalize(), (cage - speed) * per_roll);
+            Vector2::new(speed - roll * normal.y, roll * normal.x)
+        };
+        [on(rested.place - rested.crossing, inner), on(rested.place, outer)]
+    }
+
+    /// [-] share of the spin of balls that is on the outer ring, of the angular velocities [rad/s] that they have there, axial and radial: by what each
+    /// carries. All of it is on the inner ring where nothing tells.
+    pub fn spin_share(
+        &self,
+        rested: &[Rested],
+        angular: impl Iterator<Item = Vector2<f64>>,
+        speeds: [f64; 3],
+    ) -> f64 {
+        let (shared, all) = rested.iter().zip(angular).fold((0.0, 0.0), |(shared, all), (ball, angular)| {
+            let [inner, outer] = self.rolls(ball, speeds);
+            let between = inner - outer;
+            (
+                shared + ball.loads[0] * (angular - outer).dot(&between),
+                all + ball.loads[0] * between.norm_squared(),
+            )
+        });
+        if all > 0.0 { (shared / all).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// \[m] centre of a ball from the outer ring's origin, in the axes of that, at an azimuth \[rad]; and its angular velocity [rad/s] as it rolls
+    /// at speeds of cage, inner and outer ring [rad/s], with a share of its spin on the outer ring.
     pub fn motion(
         &self,
         rested: &Rested,
         radial: &Vector3<f64>,
-        [cage, outer]: [f64; 2],
+        speeds: [f64; 3],
+        share: f64,
     ) -> [Vector3<f64>; 2] {
         let circle = &self.circles[1];
         let orbit = circle.radius + rested.place.y;
         let position = Vector3::x() * (circle.offset + rested.place.x) + radial * orbit;
-        let normal = rested.place.normalize();
-        let roll = (cage - outer) * orbit / self.radius;
-        [position, Vector3::x() * (outer - roll * normal.y) + radial * (roll * normal.x)]
+        let [inner, outer] = self.rolls(rested, speeds);
+        // What the inner ring does not press rolls on the outer one.
+        let share = if rested.loads[0] > 0.0 { share } else { 0.0 };
+        let angular = outer + (inner - outer) * share;
+        [position, Vector3::x() * angular.x + radial * angular.y]
     }
 
     /// \[J] what keeps balls at the speed of the cage puts in between two places, beside what changes their speed: work of centrifugal forces and

@@ -6,8 +6,8 @@
 //!
 //! Rollers are a link between a shaft and what the outer ring sits in ([`crate::model::link::rollers`]).
 //!
-//! What this level does not know is what elements need time for: slip and skidding, a cage of its own, spin that lags behind, friction at the
-//! rings, the weight of elements, and waves and spalls of the surfaces.
+//! What this level does not know is what elements need time for: slip and skidding, a cage of its own, spin that lags behind, friction along
+//! orbits, the weight of elements, and waves and spalls of the surfaces. Friction brakes rings by the power that rolling elements lose.
 
 pub mod ball;
 pub mod bearing;

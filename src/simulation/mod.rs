@@ -340,7 +340,12 @@ impl Simulation {
 
 /// Conditions of every contact of a state under these inputs.
 fn conditions(inputs: &Inputs, state: &State) -> Conditions {
+    conditions_with(inputs.friction, inputs.effects.lubrication, state)
+}
+
+/// The same with a friction coefficient and a share of lubrication.
+fn conditions_with(friction: f64, lubrication: f64, state: &State) -> Conditions {
     let spins = Race::BOTH.map(|race| state.race(race).rate.x);
     let warmth = state.grown.map_or(Warmth { spins, ..Warmth::default() }, |grown| grown.warmth);
-    Conditions { friction: inputs.friction, warmth, lubrication: inputs.effects.lubrication }
+    Conditions { friction, warmth, lubrication }
 }

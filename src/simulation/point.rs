@@ -16,6 +16,8 @@ enum Known {
     Nothing,
     /// The workspace has those of the step that led here.
     OfStep,
+    /// They were evaluated when the bearing, which is without states, came here.
+    Rested,
 }
 
 /// Quantities that the outputs of a communication point depend on, beside model and state.
@@ -39,6 +41,11 @@ impl Point {
         let known = if stepped { Known::OfStep } else { Known::Nothing };
         let (contacts, instant, outputs) = Default::default();
         Self { conditions, known, contacts, instant, outputs }
+    }
+
+    /// A point that a bearing without states comes to, with its contacts.
+    pub fn rested(conditions: Conditions, contacts: Contacts) -> Self {
+        Self { known: Known::Rested, ..Self::of_contacts(conditions, contacts) }
     }
 
     /// A point whose contacts were evaluated.
@@ -70,7 +77,7 @@ impl Simulation {
         contacts.get_or_init(|| {
             Box::new(match known {
                 Known::OfStep => self.workspace.contacts(&self.model),
-                Known::Nothing => Contacts::new(&self.model, &self.state, conditions),
+                Known::Nothing | Known::Rested => Contacts::new(&self.model, &self.state, conditions),
             })
         })
     }
@@ -104,6 +111,11 @@ impl Simulation {
 
     /// The state as it is becomes that of the last communication point; `stepped` if the last step with this workspace led to it.
     pub(super) fn reach(&mut self, stepped: bool) {
+        // Said once: what is set later is seen anew.
+        if let known @ Known::Rested = &mut self.point.known {
+            *known = Known::Nothing;
+            return;
+        }
         let stepped = stepped && !self.model.without_states && self.workspace.has_contacts_of_state();
         self.point = Point::new(conditions(&self.inputs, &self.state), stepped);
     }

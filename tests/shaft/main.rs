@@ -18,6 +18,7 @@ mod hub;
 mod level;
 mod level_changes;
 mod level_found;
+mod level_friction;
 mod loads;
 mod mesh;
 mod motion;

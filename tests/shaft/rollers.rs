@@ -209,6 +209,56 @@ fn closed_form_a_pair_of_tapered_bearings_has_the_preload_of_its_clearance_and_s
     assert!((left + right).abs() < 1e-3 && left > 100.0 && rollers.largest_rib_load > 1.0, "{left} {right}");
 }
 
+/// The tapered pair with a preload of both, in place of a clearance.
+fn preloaded(preload: &str) -> String {
+    ["-x", "+x"].iter().fold(
+        tapered_pair("1 um", "[0, 0, 0]").replace(", axial_clearance = \"1 um\"", ""),
+        |text, direction| {
+            let own = format!("direction = \"{direction}\"");
+            text.replace(&format!("{own} }}"), &format!("{own}, preload = {preload} }}"))
+        },
+    )
+}
+
+#[test]
+fn closed_form_tapered_bearings_have_the_preload_that_they_are_given() {
+    let axial = |text: &str| {
+        let system = system(text);
+        let links = &system.outputs().links;
+        [links[0].state.force[0], links[1].state.force[0]]
+    };
+    for wanted in [40.0, 900.0, 20e3] {
+        for own in axial(&preloaded(&format!("{{ force = {wanted} }}"))) {
+            // Its weight presses the shaft across the axis, too.
+            assert!((own.abs() / wanted - 1.0).abs() < 10.0 / wanted, "{own} {wanted}");
+        }
+    }
+    let way = axial(&preloaded("{ displacement = \"8 um\" }"));
+    assert_eq!(way, axial(&tapered_pair("-8 um", "[0, 0, 0]")));
+}
+
+#[test]
+fn a_preload_of_rollers_that_cannot_be_is_refused() {
+    let too_much = preloaded("{ force = \"1 MN\" }");
+    let twice = tapered_pair("-8 um", "[0, 0, 0]")
+        .replace("direction = \"-x\" }", "direction = \"-x\", preload = { force = 10 } }");
+    let pulled = preloaded("{ force = -10 }");
+    let across = NON_LOCATING
+        .replace("{ position = \"100 mm\" }", "{ position = \"100 mm\", preload = { force = 10 } }");
+    assert!(across != NON_LOCATING);
+    for (text, parts) in [
+        (too_much, ["bearing.mounting.preload.force", "1000000", "allowed is [0,"]),
+        (twice, ["bearing.mounting.preload", "axial_clearance", "one of both"]),
+        (pulled, ["bearing.mounting.preload.force", "-10", "allowed is [0,"]),
+        (across, ["bearing.mounting", "preload", "tapered"]),
+    ] {
+        let why = SystemScene::parse(&text, None, Path::new(".")).unwrap_err().to_string();
+        for part in parts {
+            assert!(why.contains(part), "{why}\nshould have {part}");
+        }
+    }
+}
+
 #[test]
 fn invariant_a_tapered_bearing_by_its_designation_is_that_of_its_keys() {
     let by_keys = tapered_pair("-8 um", "[\"600 N\", \"2 kN\", 0]");

@@ -7,6 +7,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use roulement::model::state::Statistics;
 use roulement::scene::Solver;
 use roulement::scene::machine::MachineScene;
 use roulement::simulation::machine::Machine;
@@ -35,7 +36,7 @@ pub struct Judged {
     pub over: f64,
     /// [-] error of the history of the torque, of which nothing is promised.
     pub torque: f64,
-    /// [-] contact evaluations; one with derivatives counts as three.
+    /// [-] contact evaluations, one with derivatives counts as three; of a machine without states those of its equations.
     pub evaluations: u64,
 }
 
@@ -119,7 +120,7 @@ impl Regret {
     }
 }
 
-/// Plays a scene: what comes of it, and contact evaluations.
+/// Plays a scene: what comes of it, and its evaluations ([`Judged::evaluations`]).
 ///
 /// # Errors
 /// If the run cannot start or go on, or was interrupted.
@@ -133,11 +134,12 @@ pub fn played(scene: &MachineScene, interrupted: &AtomicBool) -> Result<(Run, u6
     if flow.is_break() {
         return Err(StudyError::Interrupted);
     }
-    let work = machine.bearings().map(|(_, bearing)| {
-        let counted = bearing.state().statistics;
-        counted.contact_values + TANGENT * counted.contact_tangents
-    });
-    let work = work.sum();
+    let Statistics { contact_values, contact_tangents, newton, steps, .. } = machine.statistics();
+    let work = match contact_values + TANGENT * contact_tangents {
+        // Bearings without states count none: every correction and every step evaluates the whole machine.
+        0 => newton.iterations + steps,
+        work => work,
+    };
     Ok((watch.finish(&machine).take_comparable(&machine, 0.0), work))
 }
 

@@ -311,14 +311,14 @@ const OF_PROMISE: &str = "What default steps promise, and tolerances alone that 
     the run over 1 %, and of histories but that of the torque over 2 %, the largest of all. A star marks the cheapest tolerance that keeps it. \
     Evaluations of contacts with derivatives count as three.";
 
-/// Steps and tolerances -> error over the promise -> contact evaluations.
+/// Steps and tolerances -> error over the promise -> evaluations.
 fn promise(regret: &Regret) -> Block {
     let header = [
         "steps",
         "kept",
         "error over the promise",
         "history of the torque",
-        "contact evaluations",
+        "evaluations",
         "cost over the cheapest",
     ];
     let cheapest = regret.cheapest().map(|(tried, _)| tried);

@@ -119,6 +119,21 @@ fn cost_studies_the_levers_that_are_asked_for_and_ends_with_advice() {
 }
 
 #[test]
+fn cost_compares_steps_of_a_machine_without_states_by_its_own_evaluations() {
+    let scratch = Scratch::new("stateless");
+    let text = std::fs::read_to_string(scene("shafts/pinion")).unwrap();
+    let text = text.replace("catalogue = \"7206 B\"", "catalogue = \"7206 B\"\nlevel = \"equilibrium\"");
+    std::fs::write(scratch.path("short.toml"), text.replace("\"20 ms\"", "\"2 ms\"")).unwrap();
+    let arguments = ["cost", &scratch.path("short.toml"), "-o", &scratch.path("out"), "--only", "default"];
+    let output = roulement(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    let (_, times) = said.split_once("default steps: ").unwrap_or_else(|| panic!("{said}"));
+    let (times, _) = times.split_once(" times the cost").unwrap_or_else(|| panic!("{said}"));
+    assert!((0.2..20.0).contains(&times.parse::<f64>().unwrap()), "{said}");
+}
+
+#[test]
 fn cost_says_whether_its_window_has_settled_and_how_long_the_scene_should_run() {
     // Balls that start rolling, without spin in balance, need 150 ms to settle; at 1 rpm without friction nothing has to.
     let scratch = Scratch::new("settled");

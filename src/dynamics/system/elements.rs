@@ -19,6 +19,8 @@ use crate::quasi_static::rings::Placed;
 
 /// [-] share of a load that a residual may leave.
 const SHARE_OF_LOAD: f64 = 1e-9;
+/// [rad/s] speed of the races against each other below which friction goes with it: what sticks is not known at this level.
+pub const CREEPS: f64 = 1e-3;
 /// \[N] residual that is small enough for any bearing.
 const FORCE_TOLERANCE: f64 = 1e-6;
 
@@ -64,16 +66,20 @@ pub struct ElementState {
     pub rate: f64,
     /// [-] speed of the cage against the outer race over that of the inner race against it, as balls rolled where this level began.
     pub ratio: f64,
+    /// [-] share of the spin of balls that is on the outer race, as they rolled where this level began.
+    pub spin_share: f64,
     /// Damping of its contacts, by creep too, where its balls rolled there.
     pub damping: Option<Damping>,
     /// The elements.
     pub rested: Vec<Rested>,
     /// \[N] largest load.
     pub largest: f64,
+    /// [N m] torque that brings the losses of its contacts.
+    pub friction: f64,
 }
 
 /// A bearing without states in a step.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ElementStep<'a> {
     /// Between what.
     pub joint: &'a ElementJoint,
@@ -101,6 +107,10 @@ pub struct Seen {
     frame: UnitQuaternion<f64>,
     /// The inner race from there.
     pub motion: RingMotion,
+    /// [-] axis of the inner race.
+    axis: Vector3<f64>,
+    /// [rad/s] its speed about that against the outer race.
+    pub speed: f64,
 }
 
 /// What the elements do to both races.
@@ -112,6 +122,8 @@ pub struct OnRaces {
     pub elastic: f64,
     /// \[W] lost to damping.
     pub damped: f64,
+    /// \[W] lost to friction.
+    pub rubbed: f64,
 }
 
 impl<'a> ElementStep<'a> {
@@ -178,7 +190,9 @@ impl<'a> ElementStep<'a> {
             twist: stack(&back(velocity), &back(inner.1.angular_velocity - tilting)),
             turn: [turn, rate],
         };
-        Seen { seats, races, frame, motion }
+        let axis = axes.inner;
+        let speed = (inner.1.angular_velocity - outer.1.angular_velocity).dot(&axis);
+        Seen { seats, races, frame, motion, axis, speed }
     }
 
     /// Forces there.
@@ -194,8 +208,8 @@ impl<'a> ElementStep<'a> {
         let (force, moment) = (halves(0), halves(3));
         let [inner, outer] = [&seen.races.inner.0, &seen.races.outer.0];
         // A cage of given speed hands the moment that it takes to the rings, as their speeds make its own.
-        let axis = inner.orientation * Vector3::x();
-        let moment = moment + axis * (self.start.ratio * of.turning);
+        let friction = self.start.friction * seen.speed / seen.speed.hypot(CREEPS);
+        let moment = moment + seen.axis * (self.start.ratio * of.turning - friction);
         let arm = inner.position - outer.position;
         OnRaces {
             wrenches: PerRace {
@@ -204,6 +218,7 @@ impl<'a> ElementStep<'a> {
             },
             elastic: of.elastic,
             damped: of.damped + held.dot(&seen.motion.twist),
+            rubbed: friction * seen.speed,
         }
     }
 
@@ -239,7 +254,9 @@ impl<'a> ElementStep<'a> {
         // A ring that spins turns the elements along.
         let mut by_spin = by_displacement.column_mut(3);
         by_spin += tangents.by_turn * self.start.ratio;
-        let by_rate = tangents.by_rate - self.damping.unwrap_or_else(Matrix6::zeros);
+        let mut by_rate = tangents.by_rate - self.damping.unwrap_or_else(Matrix6::zeros);
+        // Of `W/sqrt(W^2 + w^2)`.
+        by_rate[(3, 3)] -= self.start.friction * CREEPS * CREEPS / seen.speed.hypot(CREEPS).powi(3);
         let gains = by_displacement * step.position_gain() + by_rate * step.velocity_gain();
         let ends = PerRace::new(|race| self.relative(race, seen));
         for row in Race::BOTH {
@@ -298,10 +315,16 @@ impl<'a> ElementStep<'a> {
 }
 
 impl Seen {
-    /// [rad/s] speeds of the cage and the outer race.
-    pub fn speeds(&self) -> [f64; 2] {
+    /// [rad/s] speeds of the cage, the inner and the outer race.
+    pub fn speeds(&self) -> [f64; 3] {
         let (pose, twist) = &self.races.outer;
-        [self.motion.turn[1], twist.angular_velocity.dot(&(pose.orientation * Vector3::x()))]
+        let outer = twist.angular_velocity.dot(&(pose.orientation * Vector3::x()));
+        [self.motion.turn[1], outer + self.speed, outer]
+    }
+
+    /// A vector of the world in the outer race's axes, which do not spin.
+    pub fn in_outer(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        self.frame.inverse() * v
     }
 
     /// A vector of the outer race's axes in those of the world.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::rollers::bearing;
+use super::rollers::{bearing, way_of_preload};
 use super::spring::SceneSpring;
 use super::{MountedScene, SystemLoad};
 use crate::catalogue::{CatalogueError, DoubleRow};
@@ -123,8 +123,11 @@ impl WrittenBearing {
             bore: mounting.bore(),
             housing: mounting.housing.and_then(|wanted| housings.iter().position(|own| own.name == wanted)),
             stiffness: stiffness.unwrap_or_default(),
-            rollers: rollers
-                .map(|rollers| bearing(&rollers, mounting.direction.sign(), stack(&offset, &tilt))),
+            rollers: rollers.map(|rollers| {
+                // That there is one was checked.
+                let preload = way_of_preload(&rollers, &mounting.preload).unwrap_or_default();
+                bearing(&rollers, mounting.direction.sign(), stack(&offset, &tilt), preload)
+            }),
         }
     }
 

@@ -207,16 +207,17 @@ fn linked(bearing: &WrittenBearing) -> Result<(), SceneError> {
         |source| SceneError::At { place: format!("bearing \"{}\"", bearing.name), source: Box::new(source) };
     let mounting = &bearing.mounting;
     let preload = mounting.preload.force.is_some() || mounting.preload.displacement.is_some();
+    let tapered = bearing.rollers.as_ref().is_some_and(|of| of.contact_angle.is_some());
     let given = [
         ("bearing.scene", bearing.scene.is_some()),
         ("bearing.catalogue", bearing.catalogue.is_some()),
         ("bearing.set", !bearing.set.is_empty()),
         ("bearing.level_changes", bearing.level_changes),
-        ("bearing.mounting", mounting.axial == AxialSeat::Free || preload),
+        ("bearing.mounting", mounting.axial == AxialSeat::Free || preload && !tapered),
     ];
     if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
         let why = "is for a bearing of balls that are simulated; of one by its stiffness or by rollers mounting has position, direction, housing, offset and \
-                   misalignment alone, and outer_shaft of one by rollers";
+                   misalignment alone, outer_shaft of one by rollers, and preload of one by tapered rollers";
         return Err(inside(SceneError::conflict(key, why)));
     }
     let rubs = bearing
@@ -236,7 +237,8 @@ fn linked(bearing: &WrittenBearing) -> Result<(), SceneError> {
             Err(SceneError::conflict("bearing", "give at most one of stiffness and rollers"))
         }
         (Some(stiffness), None) => spring::check_bearing(stiffness),
-        (None, Some(rollers)) => rollers::check(rollers, bearing.level),
+        (None, Some(of)) => rollers::check(of, bearing.level)
+            .and_then(|()| rollers::way_of_preload(of, &mounting.preload).map(drop)),
         (None, None) => Ok(()),
     };
     checked.map_err(inside)

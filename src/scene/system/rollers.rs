@@ -6,7 +6,8 @@ use super::roller_film;
 use crate::model::link::roller::Profile;
 use crate::model::link::rollers::{Geometry, Rollers, Taper};
 use crate::schema::numbers::Range;
-use crate::schema::{AxialTaken, BearingLevel, RollerProfile, RollersSection, SceneError};
+use crate::schema::units::{Force, Length};
+use crate::schema::{AxialTaken, BearingLevel, Preload, RollerProfile, RollersSection, SceneError};
 
 const COUNT: Range = Range::closed(3.0, 1000.0, "");
 const SIZE: Range = Range::closed(1e-4, 1.0, "m");
@@ -16,6 +17,8 @@ const ANGLE: Range = Range::closed(0.05, 0.8, "rad");
 const RADIUS: Range = Range::closed(1e-3, 1e6, "m");
 const STIFFNESS: Range = Range::above(0.0, 1e15, "N/m");
 const FORCE: Range = Range::above(0.0, 1e9, "N");
+/// [-] longest way of a preload, in diameters of a roller.
+const LONGEST_WAY: f64 = 0.05;
 const DAMPING: Range = Range::closed(0.0, 1e15, "N s/m or N m s/rad");
 
 /// Checks the keys of a roller bearing.
@@ -72,8 +75,42 @@ pub fn check(of: &RollersSection, level: Option<BearingLevel>) -> Result<(), Sce
     roller_film::check(of)
 }
 
-/// The bearing, whose x axis points along that of the shaft (1) or against it (-1), with the bore of its outer ring at `rest`.
-pub fn bearing(of: &RollersSection, direction: f64, mut rest: Vector6<f64>) -> Rollers {
+/// \[m] way by which a preload pushes the inner ring of a tapered bearing along the bearing's x axis, with rings that are not tilted.
+///
+/// # Errors
+/// If there is another play, or no way within a twentieth of a roller takes the force.
+pub fn way_of_preload(of: &RollersSection, preload: &Preload) -> Result<f64, SceneError> {
+    let key = "bearing.mounting.preload";
+    let given = match (preload.displacement, preload.force) {
+        (Some(Length(way)), _) => Err(way),
+        (None, Some(Force(force))) => Ok(force),
+        (None, None) => return Ok(0.0),
+    };
+    if of.axial_clearance.is_some() {
+        let why =
+            "says how far the rings are from each other, as rollers.axial_clearance does: give one of both";
+        return Err(SceneError::conflict(key, why));
+    }
+    let wanted = match given {
+        Err(way) => return CLEARANCE.check(&format!("{key}.displacement"), -way).map(|()| way),
+        Ok(force) => force,
+    };
+    let longest = LONGEST_WAY * of.diameter.0;
+    let rollers = bearing(of, 1.0, Vector6::zeros(), 0.0);
+    let force = |way: f64| -rollers.force(&(Vector6::x() * way), &Vector6::zeros()).force[0];
+    Range::closed(0.0, force(longest), "N").check(&format!("{key}.force"), wanted)?;
+    let (mut low, mut high) = (0.0, longest);
+    // To the last bit.
+    while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
+        let middle = 0.5 * (low + high);
+        if force(middle) < wanted { low = middle } else { high = middle }
+    }
+    Ok(high)
+}
+
+/// The bearing, whose x axis points along that of the shaft (1) or against it (-1), with the bore of its outer ring at `rest`, and a way \[m] of the
+/// inner ring along that axis by a preload.
+pub fn bearing(of: &RollersSection, direction: f64, mut rest: Vector6<f64>, preload: f64) -> Rollers {
     let along = of.axial_way.map_or([false; 2], |way| match way {
         AxialTaken::Both => [true; 2],
         AxialTaken::Along => [direction > 0.0, direction < 0.0],
@@ -81,7 +118,7 @@ pub fn bearing(of: &RollersSection, direction: f64, mut rest: Vector6<f64>) -> R
     });
     let axial_clearance = of.axial_clearance.map_or(0.0, |of| of.0);
     let taper = of.contact_angle.zip(of.roller_angle).map(|(contact_angle, roller_angle)| {
-        rest[0] += direction * axial_clearance;
+        rest[0] += direction * (axial_clearance - preload);
         Taper { contact_angle: contact_angle.0, roller_angle: roller_angle.0, direction }
     });
     let profile = match (of.crown_radius, of.profile) {

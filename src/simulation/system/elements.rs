@@ -3,20 +3,22 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
+use super::super::point::Point;
 use super::super::together::{Stopped, Together};
-use super::super::{Simulation, SimulationError};
+use super::super::{Simulation, SimulationError, conditions_with};
 use super::structures::Structures;
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::Joint;
 use crate::dynamics::system::elements::{
-    Damping, ElementJoint, ElementState, ElementStep, OnRaces, Seen, power_of,
+    CREEPS, Damping, ElementJoint, ElementState, ElementStep, OnRaces, Seen, power_of,
 };
 use crate::dynamics::{Allowed, Boundary};
 use crate::effects::rating::Turning;
 use crate::equilibrium::MAX_APPROACH;
-use crate::forces::kinetic_energy_of;
+use crate::forces::{Contacts, kinetic_energy_of};
+use crate::model::Conditions;
 use crate::model::balance::may_be_left;
 use crate::model::bearing::azimuth_directions;
 use crate::model::bodies::{PerRace, Race};
@@ -114,24 +116,36 @@ pub fn started_at(
         turn,
         rate: 0.0,
         ratio: ratio(bearing),
+        spin_share: 0.0,
         damping: damping(bearing),
         rested: vec![],
         largest: 0.0,
+        friction: 0.0,
     };
     let mut step = step(joint, &nothing, bearing, &boundary, 0.0);
     let seen = step.seen_in(carriers, states);
-    step.balls = Balls::new(&bearing.model, &boundary.conditions, seen.speeds());
+    let speeds = seen.speeds();
+    step.balls = Balls::new(&bearing.model, &boundary.conditions, [speeds[0], speeds[2]]);
     if nothing.damping.is_some() {
         step.balls.leave_damping();
     }
     let placed = step.balls.placed(&bearing.model, &boundary.conditions, &seen.motion);
     let [_, rate] = seen.motion.turn;
-    let start = ElementState { rate, rested: placed, ..nothing };
-    let step = ElementStep { start: &start, ..step };
-    let (state, on) = step.rest(&bearing.model, &boundary.conditions, &seen);
-    bearing.rest(&step, (&seen, &on), &state, &boundary, None);
-    // What was seen before is not what the elements show.
-    bearing.reach(false);
+    // As balls roll there, in the plane of each.
+    let angular = bearing.state.balls.iter().map(|ball| {
+        let [place, angular] = [ball.position - seen.races.outer.0.position, ball.angular_velocity]
+            .map(|vector| seen.in_outer(&vector));
+        Vector2::new(angular.x, angular.yz().dot(&place.yz().normalize()))
+    });
+    let spin_share = step.balls.spin_share(&placed, angular, speeds);
+    let mut state = ElementState { rate, rested: placed, spin_share, ..nothing };
+    // The second time with the friction that the first one finds.
+    for _ in 0..2 {
+        let start = state;
+        let step = ElementStep { start: &start, ..step.clone() };
+        let (rested, on) = step.rest(&bearing.model, &boundary.conditions, &seen);
+        state = bearing.rest(&step, (&seen, &on), rested, &boundary, None);
+    }
     state
 }
 
@@ -208,8 +222,7 @@ impl Together<'_> {
                 (&mut self.bearings[step.joint.bearing], &boundaries[step.joint.bearing]);
             let seen = step.seen_in(&structures.carriers, &structures.states);
             let (state, on) = step.rest(&bearing.model, &boundary.conditions, &seen);
-            bearing.rest(&step, (&seen, &on), &state, boundary, Some(h));
-            states.push(state);
+            states.push(bearing.rest(&step, (&seen, &on), state, boundary, Some(h)));
         }
         structures.element_states = states;
     }
@@ -234,15 +247,15 @@ impl Simulation {
         script.into_iter().chain([passing]).map(|period| period / STEPS_PER_BALL).reduce(f64::min)
     }
 
-    /// Shows elements as balls, after a step of `h` \[s] or none.
+    /// Shows elements as balls, after a step of `h` \[s] or none; gives their state with the friction that their contacts have there.
     fn rest(
         &mut self,
         step: &ElementStep<'_>,
         (seen, on): (&Seen, &OnRaces),
-        after: &ElementState,
+        mut after: ElementState,
         boundary: &Boundary,
         h: Option<f64>,
-    ) {
+    ) -> ElementState {
         let model = &self.model;
         let state = &mut self.state;
         let before = (state.time, state.powers);
@@ -265,7 +278,7 @@ impl Simulation {
         let outer = &seen.races.outer;
         for (index, (ball, rested)) in state.balls.iter_mut().zip(&after.rested).enumerate() {
             let (radial, across) = azimuth_directions(step.balls.azimuth(index, after.turn));
-            let [position, angular] = step.balls.motion(rested, &radial, speeds);
+            let [position, angular] = step.balls.motion(rested, &radial, speeds, after.spin_share);
             let along = across * (speeds[0] * position.dot(&radial));
             ball.position = outer.0.position + seen.in_world(&position);
             ball.velocity = outer.1.velocity + seen.in_world(&along);
@@ -273,7 +286,12 @@ impl Simulation {
             ball.acceleration = Vector3::zeros();
             ball.angular_acceleration = Vector3::zeros();
         }
-        state.powers = Powers { input: power_of(seen, on), damping: on.damped, ..Powers::default() };
+        state.powers = Powers {
+            input: power_of(seen, on),
+            damping: on.damped,
+            friction: on.rubbed,
+            ..Powers::default()
+        };
         if let Some(grown) = &mut state.grown {
             grown.warmth = boundary.conditions.warmth;
         }
@@ -300,6 +318,16 @@ impl Simulation {
         } else {
             state.energies.stored = on.elastic + moved;
         }
+        let Conditions { friction, lubrication, .. } = boundary.conditions;
+        let conditions = conditions_with(friction, lubrication, &self.state);
+        let contacts = Contacts::new(&self.model, &self.state, &conditions);
+        self.point = Point::rested(conditions, contacts);
+        if seen.speed.abs() > CREEPS {
+            let lost = self.sums().losses;
+            // Damping is in the forces.
+            after.friction = (lost.total() - lost.damping) / seen.speed.abs();
+        }
+        after
     }
 
     /// Refuses loads and places of elements.

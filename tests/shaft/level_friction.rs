@@ -1,0 +1,113 @@
+//! Friction of bearings without states: it brakes their shafts by the power that their contacts lose.
+
+use roulement::simulation::system::System;
+
+use crate::common::{GEARBOX, imbalance, stored, system};
+
+/// [rad/s] speed of the pinion.
+const SPEED: f64 = 200.0 * std::f64::consts::PI;
+
+/// The pinion with both bearings at a level.
+fn pinion(level: &str, changes: &[(&str, &str)]) -> String {
+    let text =
+        GEARBOX.replace("catalogue = \"7206 B\"", &format!("catalogue = \"7206 B\"\nlevel = \"{level}\""));
+    changes.iter().fold(text, |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    })
+}
+
+/// Means of torque of the shaft \[N m], friction torque of both bearings \[N m] and losses \[W] over the second half of a run.
+fn means(text: &str, end: f64) -> [f64; 4] {
+    let mut system = system(text);
+    let looks = 200;
+    let mut sum = [0.0; 4];
+    for look in 1..=looks {
+        system.advance(end * f64::from(look) / f64::from(looks)).unwrap();
+        if 2 * look > looks {
+            sum[0] += system.outputs().shafts[0].torque;
+            for (own, (_, bearing)) in sum[1..3].iter_mut().zip(system.bearings()) {
+                *own += bearing.outputs().friction_torque;
+            }
+            sum[3] += system.bearings().map(|(_, bearing)| bearing.outputs().losses.total()).sum::<f64>();
+        }
+    }
+    sum.map(|sum| sum / f64::from(looks / 2))
+}
+
+#[test]
+fn independent_friction_torques_are_those_of_bearings_with_states_and_bring_the_losses() {
+    for changes in [&[][..], &[("[337.8, -475.0, 1260.5]", "[900.0, -475.0, 400.0]")]] {
+        let with = means(&pinion("dynamic", changes), 20e-3);
+        let without = means(&pinion("equilibrium", changes), 20e-3);
+        for which in [1, 2] {
+            let (with, without) = (with[which], without[which]);
+            assert!((without / with - 1.0).abs() < 0.08, "{changes:?} {which}: {without} {with}");
+        }
+        let [torque, left, right, losses] = without;
+        assert!(((left + right) * SPEED / losses - 1.0).abs() < 1e-3, "{left} {right} {losses}");
+        // The mesh drives with 30 N m.
+        let drive = torque + 30.0;
+        assert!((drive / (left + right) - 1.0).abs() < 1e-3, "{torque} {left} {right}");
+    }
+}
+
+/// A pinion that nothing drives, from a speed.
+fn free(speed: &str) -> System {
+    let drive = format!("torque = 0.0\nstart_speed = \"{speed}\"");
+    let changes =
+        [("speed = \"6000 rpm\"", drive.as_str()), ("moment = [30.0, 0, -8.04]", "moment = [0, 0, -8.04]")];
+    system(&pinion("equilibrium", &changes))
+}
+
+#[test]
+fn invariant_a_shaft_that_nothing_drives_loses_what_friction_takes() {
+    let mut system = free("6000 rpm");
+    let before = stored(&system);
+    let at_start = system.outputs().shafts[0].spin.speed;
+    let torque: f64 = system.bearings().map(|(_, b)| b.outputs().friction_torque).sum();
+    system.advance(10e-3).unwrap();
+    let spin = system.outputs().shafts[0].spin;
+    let inertia = -torque * 10e-3 / (spin.speed - at_start);
+    // That of the shaft: balls without states have none about it.
+    assert!((inertia / 6e-4 - 1.0).abs() < 0.05, "{inertia} {at_start} {spin:?}");
+    let rubbed: f64 = system.bearings().map(|(_, b)| b.state().energies.friction).sum();
+    let lost = 0.5 * 6e-4 * (at_start * at_start - spin.speed * spin.speed);
+    assert!((rubbed / lost - 1.0).abs() < 1e-2, "{rubbed} {lost}");
+    let [shaft, bearings] = imbalance(&system, &before);
+    assert!(shaft < 1e-6 && bearings < 1e-2, "{shaft:.2e} {bearings:.2e}");
+}
+
+#[test]
+fn hard_case_a_shaft_that_friction_stops_stays_where_it_is() {
+    let mut system = free("60 rpm");
+    let mut slowest = f64::INFINITY;
+    for k in 1..=100 {
+        system.advance(1e-3 * f64::from(k)).unwrap();
+        slowest = slowest.min(system.outputs().shafts[0].spin.speed);
+    }
+    let speed = system.outputs().shafts[0].spin.speed;
+    assert!(speed.abs() < 1e-3 && slowest > -1e-3, "{speed} {slowest}");
+    assert!(system.states().iter().all(|state| state.powers.input.is_finite()));
+}
+
+#[test]
+fn invariant_friction_turns_round_with_the_speed() {
+    let ramp = (
+        "speed = \"6000 rpm\"",
+        "speed = [[0, \"300 rpm\"], [\"2 ms\", \"300 rpm\"], [\"8 ms\", \"-300 rpm\"]]",
+    );
+    let mut system = system(&pinion("equilibrium", &[ramp]));
+    let mut on_the_ring = |time: f64| {
+        system.advance(time).unwrap();
+        system
+            .bearings()
+            .map(|(_, b)| b.state().race(roulement::model::bodies::Race::Inner).bearing_wrench.moment.x)
+            .collect::<Vec<_>>()
+    };
+    let before = on_the_ring(2e-3);
+    let after = on_the_ring(10e-3);
+    for (before, after) in before.iter().zip(&after) {
+        assert!(*before != 0.0 && (after / before + 1.0).abs() < 0.02, "{before} {after}");
+    }
+}
