@@ -108,7 +108,7 @@ pub struct Outputs {
     pub warm: Option<Warm>,
     /// Flexible supports of inner and outer race, where they rest on some.
     pub supports: [Option<SupportState>; 2],
-    /// [N m] friction torque of the bearing: against the inner race's rotation about its own axis; of an equilibrium, that of its losses.
+    /// [N m] friction torque of the bearing: against the rotation of the inner race as seen from the outer one; of an equilibrium, that of its losses.
     pub friction_torque: f64,
     /// \[J] kinetic and elastic energy.
     pub stored_energy: f64,
@@ -346,16 +346,16 @@ fn along_orbit(race: &RaceMotion<f64>, offset: &Vector3<f64>, vector: &Vector3<f
     Vector3::new(vector.dot(axis), vector.dot(&radial), vector.dot(&axis.cross(&radial)))
 }
 
-/// [N m] friction torque of a state: against the inner race's rotation about its own axis; of an equilibrium, what brings its losses
+/// [N m] friction torque of a state: against the rotation of the inner race as seen from the outer one; of an equilibrium, what brings its losses
 /// ([`Outputs::torque_of_losses`]).
 pub(super) fn friction_torque(model: &Model, state: &State, losses: impl FnOnce() -> Losses) -> f64 {
+    let [inner, outer] = Race::BOTH.map(|race| state.race(race));
+    let speed = inner.rate.x - outer.rate.x;
     if model.solver.level == Level::Equilibrium {
-        let [inner, outer] = Race::BOTH.map(|race| state.race(race).rate.x);
-        return losses().torque(inner - outer);
+        return losses().torque(speed);
     }
-    let inner = state.race(Race::Inner);
     let against = -inner.bearing_wrench.moment.dot(&inner.motion().axis);
-    if inner.rate.x < 0.0 { -against } else { against }
+    if speed < 0.0 { -against } else { against }
 }
 
 /// Frame that tilts with a race but does not spin.

@@ -120,9 +120,13 @@ fn closed_form_races_of_a_run() {
 
 #[test]
 fn closed_form_friction_torque_turns_with_the_speed() {
-    // Against the inner race's rotation: positive either way round.
-    for speed in [600.0, -600.0] {
-        let speeds = [("load.inner_speed", &*format!("{speed:?}")), ("load.outer_speed", "0.0")];
+    // Against the inner race's rotation as seen from the outer one: positive either way round, whichever turns.
+    for [inner, outer] in
+        [[600.0, 0.0], [-600.0, 0.0], [0.0, 600.0], [0.0, -600.0], [300.0, 800.0], [-200.0, -700.0]]
+    {
+        let speed = inner - outer;
+        let [inner, outer] = [inner, outer].map(|speed: f64| format!("{speed:?}"));
+        let speeds = [("load.inner_speed", &*inner), ("load.outer_speed", &*outer)];
         let scene = scenes::scene(&scene(Guide::Outer), &speeds);
         let mut simulation = Simulation::new(&scene).unwrap();
         simulation.advance(3e-3).unwrap();
