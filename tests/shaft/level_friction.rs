@@ -2,7 +2,7 @@
 
 use roulement::simulation::system::System;
 
-use crate::common::{GEARBOX, imbalance, stored, system};
+use crate::common::{GEARBOX, imbalance, stored, system, train};
 
 /// [rad/s] speed of the pinion.
 const SPEED: f64 = 200.0 * std::f64::consts::PI;
@@ -110,4 +110,20 @@ fn invariant_friction_turns_round_with_the_speed() {
     for (before, after) in before.iter().zip(&after) {
         assert!(*before != 0.0 && (after / before + 1.0).abs() < 0.02, "{before} {after}");
     }
+}
+
+#[test]
+fn invariant_a_train_starts_in_balance_with_its_friction() {
+    let text = train(3).replace("catalogue = \"6205\"", "catalogue = \"6205\"\nlevel = \"equilibrium\"");
+    let system = system(&text);
+    let shafts = &system.outputs().shafts;
+    let bearings: Vec<_> = system.bearings().map(|(_, bearing)| bearing.outputs()).collect();
+    for (k, shaft) in shafts.iter().enumerate().skip(1) {
+        let friction: f64 = bearings[2 * k..2 * k + 2].iter().map(|of| of.friction_torque).sum();
+        let left = 6e-4 * shaft.spin.acceleration;
+        assert!(friction > 1e-3 && left.abs() < 0.02 * friction, "{k}: {left} {friction}");
+    }
+    let put_in: f64 = shafts.iter().map(|shaft| shaft.torque * shaft.spin.speed).sum();
+    let losses: f64 = bearings.iter().map(|of| of.losses.total()).sum();
+    assert!((put_in / losses - 1.0).abs() < 0.02, "{put_in} {losses}");
 }

@@ -145,8 +145,12 @@ fn balance(
     statics.solve(states)?;
     statics.check_preloads(asked, states)?;
     statics.initialise(states, bearings)?;
-    // Housings feel the friction torque of their bearings too, which those say that are in balance.
-    if !statics.scene.housings.is_empty() {
+    // Housings feel the friction torque of their bearings too, which those say that are in balance; shafts that give way to a torque that of bearings without states.
+    let scene = statics.scene;
+    let gives_way =
+        || (0..scene.shafts.len()).any(|shaft| scene.shafts[shaft].speed.is_none() || scene.twists(shaft));
+    let brakes = || bearings.iter().any(|&index| statics.is_without_states(index)) && gives_way();
+    if !scene.housings.is_empty() || brakes() {
         statics.see_friction(bearings);
         statics.solve(states)?;
         statics.initialise(states, bearings)?;

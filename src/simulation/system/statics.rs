@@ -16,6 +16,7 @@ use crate::model::link::{self, Law, Link, LinkForce};
 use crate::model::state::stack;
 use crate::model::structure::{Carrier, Map, StructureState, Turning};
 use crate::numerics::given::take_out;
+use crate::scene::Level;
 use crate::scene::system::SystemScene;
 use crate::scene::system::mesh::trains;
 
@@ -335,11 +336,15 @@ impl Statics<'_> {
             for Joint { race, structure, seat, .. } in
                 self.joints.iter().filter(|joint| joint.bearing == index)
             {
+                let turning = Vector3::x() * self.friction[index];
                 let on_race = match race {
+                    // With states, a start has not yet got what lasts; without, it brakes shafts from the first step on.
+                    Race::Inner if self.is_without_states(index) => {
+                        stack(&Vector3::zeros(), &-turning) - held
+                    }
                     Race::Inner => -held,
                     Race::Outer => {
                         let moment = held.fixed_rows::<3>(3) + arm.cross(&held.fixed_rows::<3>(0));
-                        let turning = Vector3::x() * self.friction[index];
                         stack(&(held.fixed_rows::<3>(0) + weight), &(moment + turning))
                     }
                 };
@@ -470,6 +475,10 @@ impl Statics<'_> {
     pub fn see_friction(&mut self, started: &[usize]) {
         for &index in started {
             let outputs = self.bearings[index].outputs();
+            if self.is_without_states(index) {
+                self.friction[index] = outputs.relative_speed().signum() * outputs.torque_of_losses();
+                continue;
+            }
             let [inner, outer] = [&outputs.inner, &outputs.outer];
             let arm = inner.pose.position - outer.pose.position;
             let [on_inner, on_outer] =
@@ -477,6 +486,11 @@ impl Statics<'_> {
             let steady = (on_inner + on_outer).abs() <= UNSTEADY * (on_inner.abs() + on_outer.abs());
             self.friction[index] = if steady { on_outer } else { 0.0 };
         }
+    }
+
+    /// Is a bearing without states?
+    pub fn is_without_states(&self, index: usize) -> bool {
+        self.scene.bearings[index].level() == Level::Equilibrium
     }
 
     fn of_bearing(&self, index: usize, source: SimulationError) -> SystemError {
