@@ -1,7 +1,7 @@
 //! Balls that are sought together, in the lanes of a vector, from where they were.
 //!
 //! It is Newton's method of [`super::ball`] without a line search, the gyroscopic couple evaluated at each place: near to where balls were it needs
-//! two to four evaluations. There is one balance only, so that what it ends at is that; a ball that it does not come to in a few evaluations,
+//! few evaluations. There is one balance only, so that what it ends at is that; a ball that it does not come to in a few evaluations,
 //! or that leaves the inner ring, is sought by itself.
 
 use nalgebra::Vector2;
@@ -12,7 +12,7 @@ use super::rings::Crossing;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::scalar::Scalar;
 
-/// Evaluations: half of them do where the couple is large.
+/// Evaluations, after which a ball is sought by itself: a couple nearly as large as the loads takes longer, as it is followed without its derivative.
 const MAX_EVALUATIONS: u32 = 12;
 
 /// Balls and what holds them at a place.
@@ -161,6 +161,7 @@ mod tests {
                 for (lane, exact) in exact.iter().enumerate() {
                     let Some(found) = all.settled(&kind, lane) else {
                         alone += 1;
+                        // Only what hardly presses the inner ring is left, or has a couple of a quarter of its loads.
                         assert!(exact.loads[0] < 30.0, "{case} {exact:?}");
                         continue;
                     };

@@ -381,3 +381,10 @@ pub struct Preload {
     /// \[m] way, such as what a spacer is ground by.
     pub displacement: Option<Length>,
 }
+
+impl Preload {
+    /// Is one asked for?
+    pub fn is_given(&self) -> bool {
+        self.force.is_some() || self.displacement.is_some()
+    }
+}

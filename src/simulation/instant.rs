@@ -1,8 +1,8 @@
 //! State of a bearing at an instant, as far as means of a run are made of it: less than all outputs, for every step.
 
 use super::entering;
-use super::losses::Losses;
-use super::outputs::{Outputs, RaceOutput, friction_torque, spin_free_frame};
+use super::losses::{Losses, friction_torque};
+use super::outputs::{Outputs, RaceOutput, spin_free_frame};
 use super::slip::RollingOrbit;
 use crate::forces::{Contacts, Totals, stored_energy};
 use crate::model::bodies::{PerRace, Race};

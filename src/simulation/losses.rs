@@ -13,6 +13,7 @@ use crate::forces::{Contacts, Totals};
 use crate::model::Model;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::{BallState, State};
+use crate::scene::Level;
 
 impl Losses {
     /// Losses of a state with these contacts, their models, motion of the races and sums.
@@ -74,4 +75,16 @@ impl Outputs {
     pub fn torque_of_losses(&self) -> f64 {
         self.losses.torque(self.relative_speed())
     }
+}
+
+/// [N m] friction torque of a state: against the rotation of the inner race as seen from the outer one; of an equilibrium, what brings its losses
+/// ([`Outputs::torque_of_losses`]).
+pub(super) fn friction_torque(model: &Model, state: &State, losses: impl FnOnce() -> Losses) -> f64 {
+    let [inner, outer] = Race::BOTH.map(|race| state.race(race));
+    let speed = inner.rate.x - outer.rate.x;
+    if model.solver.level == Level::Equilibrium {
+        return losses().torque(speed);
+    }
+    let against = -inner.bearing_wrench.moment.dot(&inner.motion().axis);
+    if speed < 0.0 { -against } else { against }
 }

@@ -5,7 +5,7 @@ use std::ops::Index;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::entering;
-use super::losses::Losses;
+use super::losses::{Losses, friction_torque};
 use super::margins::Margins;
 use super::slip::RollingOrbit;
 use crate::contact::{BallRaceContact, ContactModel, RaceMotion};
@@ -30,7 +30,6 @@ use crate::model::cage::CageModel;
 use crate::model::state::{BallState, BodyState, State, Statistics};
 use crate::model::{Conditions, Model};
 use crate::numerics::motion::{Pose, Twist, Wrench};
-use crate::scene::Level;
 
 /// A race.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -344,18 +343,6 @@ fn along_orbit(race: &RaceMotion<f64>, offset: &Vector3<f64>, vector: &Vector3<f
     let axis = &race.axis;
     let radial = (offset - axis * offset.dot(axis)).normalize();
     Vector3::new(vector.dot(axis), vector.dot(&radial), vector.dot(&axis.cross(&radial)))
-}
-
-/// [N m] friction torque of a state: against the rotation of the inner race as seen from the outer one; of an equilibrium, what brings its losses
-/// ([`Outputs::torque_of_losses`]).
-pub(super) fn friction_torque(model: &Model, state: &State, losses: impl FnOnce() -> Losses) -> f64 {
-    let [inner, outer] = Race::BOTH.map(|race| state.race(race));
-    let speed = inner.rate.x - outer.rate.x;
-    if model.solver.level == Level::Equilibrium {
-        return losses().torque(speed);
-    }
-    let against = -inner.bearing_wrench.moment.dot(&inner.motion().axis);
-    if speed < 0.0 { -against } else { against }
 }
 
 /// Frame that tilts with a race but does not spin.

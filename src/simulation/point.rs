@@ -3,7 +3,8 @@
 use std::sync::OnceLock;
 
 use super::instant::Instant;
-use super::outputs::{Outputs, RaceOutput, friction_torque};
+use super::losses::friction_torque;
+use super::outputs::{Outputs, RaceOutput};
 use super::{Simulation, conditions};
 use crate::forces::Contacts;
 use crate::model::Conditions;

@@ -184,7 +184,7 @@ fn published_number_the_three_stage_gearbox_keeps_its_ratio_without_states() {
             count += 1.0;
         }
     }
-    // By the numbers of teeth, from 500 N m out; friction of bearings takes less than a thousandth.
+    // By the numbers of teeth, from 500 N m out; friction of bearings takes 0.4 % (2.8 W of 690).
     let hand = 500.0 * (23.0 / 67.0) * (13.0 / 76.0) * (14.0 / 87.0);
     assert!((torque / count / hand - 1.0).abs() < 0.01, "{} {hand}", torque / count);
     for (mean, start) in normal.iter().zip(&start) {

@@ -42,6 +42,7 @@ fn independent_friction_torques_are_those_of_bearings_with_states_and_bring_the_
         let without = means(&pinion("equilibrium", changes), 20e-3);
         for which in [1, 2] {
             let (with, without) = (with[which], without[which]);
+            // Balls with states slip, and spin each by itself: 3 to 5 % under the first load.
             assert!((without / with - 1.0).abs() < 0.08, "{changes:?} {which}: {without} {with}");
         }
         let [torque, left, right, losses] = without;
@@ -120,6 +121,7 @@ fn invariant_a_train_starts_in_balance_with_its_friction() {
     let bearings: Vec<_> = system.bearings().map(|(_, bearing)| bearing.outputs()).collect();
     for (k, shaft) in shafts.iter().enumerate().skip(1) {
         let friction: f64 = bearings[2 * k..2 * k + 2].iter().map(|of| of.friction_torque).sum();
+        // Statics has the torque of balls in balance with their spin, the first step that of a common share.
         let left = 6e-4 * shaft.spin.acceleration;
         assert!(friction > 1e-3 && left.abs() < 0.02 * friction, "{k}: {left} {friction}");
     }

@@ -243,12 +243,14 @@ fn a_preload_of_rollers_that_cannot_be_is_refused() {
     let twice = tapered_pair("-8 um", "[0, 0, 0]")
         .replace("direction = \"-x\" }", "direction = \"-x\", preload = { force = 10 } }");
     let pulled = preloaded("{ force = -10 }");
+    let far = preloaded("{ displacement = \"2 mm\" }");
     let across = NON_LOCATING
         .replace("{ position = \"100 mm\" }", "{ position = \"100 mm\", preload = { force = 10 } }");
     assert!(across != NON_LOCATING);
     for (text, parts) in [
         (too_much, ["bearing.mounting.preload.force", "1000000", "allowed is [0,"]),
         (twice, ["bearing.mounting.preload", "axial_clearance", "one of both"]),
+        (far, ["bearing.mounting.preload.displacement = 0.002", "m", "allowed is [-0.01, 0.001]"]),
         (pulled, ["bearing.mounting.preload.force", "-10", "allowed is [0,"]),
         (across, ["bearing.mounting", "preload", "tapered"]),
     ] {

@@ -206,14 +206,13 @@ fn linked(bearing: &WrittenBearing) -> Result<(), SceneError> {
     let inside =
         |source| SceneError::At { place: format!("bearing \"{}\"", bearing.name), source: Box::new(source) };
     let mounting = &bearing.mounting;
-    let preload = mounting.preload.force.is_some() || mounting.preload.displacement.is_some();
     let tapered = bearing.rollers.as_ref().is_some_and(|of| of.contact_angle.is_some());
     let given = [
         ("bearing.scene", bearing.scene.is_some()),
         ("bearing.catalogue", bearing.catalogue.is_some()),
         ("bearing.set", !bearing.set.is_empty()),
         ("bearing.level_changes", bearing.level_changes),
-        ("bearing.mounting", mounting.axial == AxialSeat::Free || preload && !tapered),
+        ("bearing.mounting", mounting.axial == AxialSeat::Free || mounting.preload.is_given() && !tapered),
     ];
     if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
         let why = "is for a bearing of balls that are simulated; of one by its stiffness or by rollers mounting has position, direction, housing, offset and \
@@ -252,8 +251,7 @@ fn bore(mounting: &Mounting) -> Result<(), SceneError> {
     for (key, length) in mounting.offset.values() {
         BORE_OFFSET.check(&format!("bearing.mounting.offset.{key}"), length.unwrap_or(0.0))?;
     }
-    let preload = mounting.preload;
-    if mounting.axial == AxialSeat::Free && (preload.force.is_some() || preload.displacement.is_some()) {
+    if mounting.axial == AxialSeat::Free && mounting.preload.is_given() {
         let why = "a ring that slides (axial = \"free\") takes no axial force: nothing would hold a preload";
         return Err(SceneError::conflict("bearing.mounting.preload", why));
     }
@@ -441,8 +439,7 @@ fn alone(bearing: &MountedScene) -> Result<(), SceneError> {
             |source| SceneError::At { place: format!("bearing \"{name}\""), source: Box::new(source) };
         MASS.check("outer.mass", mass.0).map_err(inside)?;
     }
-    let preload = bearing.mounting.preload;
-    if scene.outer.drive == Drive::Wrench && (preload.force.is_some() || preload.displacement.is_some()) {
+    if scene.outer.drive == Drive::Wrench && bearing.mounting.preload.is_given() {
         return refuse(
             "bearing.mounting.preload",
             "is not for an outer race under a wrench (outer.drive), whose axial load is load.outer.x.force: give that, or \

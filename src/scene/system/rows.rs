@@ -59,8 +59,7 @@ fn both(bearing: &Value, catalogue: Catalogue) -> Result<Option<[Table; 2]>, Sce
         if let Some(seat) = seat.as_table_mut() {
             seat.insert("position".into(), (mounting.position.0 + along).into());
             seat.insert("direction".into(), direction.into());
-            let preload = &mounting.preload;
-            if axial_play > 0.0 && preload.force.is_none() && preload.displacement.is_none() {
+            if axial_play > 0.0 && !mounting.preload.is_given() {
                 let way = Table::from_iter([("displacement".to_owned(), Value::Float(-0.5 * axial_play))]);
                 seat.insert("preload".into(), way.into());
             }
