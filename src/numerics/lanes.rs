@@ -47,14 +47,16 @@ impl Lanes {
         self.zip(other, |a, b| larger(a, b.abs()))
     }
 
+    /// A function of every number.
     #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
         let [a, b, c, d] = self.0;
         Self([f(a), f(b), f(c), f(d)])
     }
 
+    /// A function of every number and that of another.
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+    pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
         Self([f(a, p), f(b, q), f(c, r), f(d, s)])
     }

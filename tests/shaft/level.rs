@@ -211,6 +211,31 @@ fn cpu() -> f64 {
     ticks / 100.0
 }
 
+/// Default steps of machines without states are those of their shafts: few, and histories within the promise of 2 %.
+#[test]
+fn convergence_default_steps_keep_histories_of_fine_ones_without_states() {
+    for (text, end) in [(cheap(GEARBOX), 10e-3), (cheap(THREE_STAGE), 4e-3)] {
+        let run = |text: &str| {
+            let mut system = system(text);
+            let looks = (1..=40).map(|look| end * f64::from(look) / 40.0);
+            let histories: Vec<_> = looks
+                .map(|time| {
+                    system.advance(time).unwrap();
+                    forces(&system)
+                })
+                .collect();
+            (histories.concat(), system.statistics().steps)
+        };
+        let (own, steps) = run(&text);
+        let (fine, of_fine) = run(&format!("{text}\n[solver]\naccuracy = \"reference\"\n"));
+        let square = |of: &[Vector3<f64>]| of.iter().map(Vector3::norm_squared).sum::<f64>();
+        let apart: Vec<_> = own.iter().zip(&fine).map(|(own, fine)| own - fine).collect();
+        let error = (square(&apart) / square(&fine)).sqrt();
+        assert!(error < 5e-3, "{error:.2e}");
+        assert!(10 * steps < of_fine, "{steps} of {of_fine}");
+    }
+}
+
 /// Prints what a second of a machine costs in communication steps of 50 us, and its longest.
 #[test]
 #[ignore = "a measurement: cargo nextest run --release --test shaft --run-ignored only cost_ --no-capture"]

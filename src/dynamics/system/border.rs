@@ -52,9 +52,10 @@ impl Border {
         self.size = size;
     }
 
-    /// Does the matrix serve for steps of a size \[s]?
+    /// Does the matrix serve for steps of a size \[s]? Sizes of steps that share an interval differ by the rounding of times.
     pub(super) fn serves(&self, size: f64) -> bool {
-        self.size == Some(size)
+        const ROUNDING: f64 = 1e-9;
+        self.size.is_some_and(|own| (own - size).abs() <= ROUNDING * size)
     }
 
     /// The matrix that serves for several steps, if one does.

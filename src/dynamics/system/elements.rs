@@ -1,5 +1,7 @@
 //! Bearings without states between structures: their elements are in balance at every place of the rings ([`crate::quasi_static`]).
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DMatrix, Dyn, Matrix3, Matrix6, OMatrix, U6, UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
@@ -17,8 +19,9 @@ use crate::numerics::tilt;
 use crate::quasi_static::bearing::{Balls, Forces, Rested, RingMotion};
 use crate::quasi_static::rings::Placed;
 
-/// [-] share of a load that a residual may leave.
-const SHARE_OF_LOAD: f64 = 1e-9;
+/// [-] share of a load that a residual may leave. It moves rings by as small a share of what contacts give way, where a step may be wrong by a
+/// thousandth of that.
+const SHARE_OF_LOAD: f64 = 1e-7;
 /// [rad/s] speed of the races against each other below which friction goes with it: what sticks is not known at this level.
 pub const CREEPS: f64 = 1e-3;
 /// \[N] residual that is small enough for any bearing.
@@ -52,8 +55,7 @@ pub struct Damping {
 impl Damping {
     /// As it is in another state: in proportion to the loads, and as creep is a slip over a speed, to its inverse, but no more than it was.
     fn at(&self, state: &ElementState, rate: f64) -> Matrix6<f64> {
-        let load: f64 = state.rested.iter().map(|ball| ball.loads[0]).sum();
-        self.matrix * ((load / self.load).min(1.0) * (self.rate / rate).abs().min(1.0))
+        self.matrix * ((state.load() / self.load).min(1.0) * (self.rate / rate).abs().min(1.0))
     }
 }
 
@@ -74,8 +76,44 @@ pub struct ElementState {
     pub rested: Vec<Rested>,
     /// \[N] largest load.
     pub largest: f64,
-    /// [N m] torque that brings the losses of its contacts.
-    pub friction: f64,
+    /// Friction of its contacts.
+    pub friction: KeptFriction,
+}
+
+/// Friction of the contacts of a bearing without states, and where it was found: it changes slowly, and serves as long as the bearing is near there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KeptFriction {
+    /// [N m] torque that brings the losses of the contacts.
+    pub torque: f64,
+    /// \[rad] turn of the elements there; none is known before the first.
+    pub turn: Option<f64>,
+    /// \[N] sum of the loads on the inner race.
+    pub load: f64,
+    /// [rad/s] speed of the inner race against the outer one.
+    pub speed: f64,
+}
+
+/// [-] change of load or speed with which friction is taken anew. What is lost follows neither more steeply than with its power 1.5.
+const FRICTION_CHANGE: f64 = 0.01;
+/// Times that friction is taken to the passing of a ball, at least.
+const FRICTIONS_PER_BALL: f64 = 4.0;
+
+impl KeptFriction {
+    /// Does it serve where so many elements have turned so far \[rad], under a sum of loads \[N] and at a speed [rad/s]?
+    pub fn serves(&self, count: usize, turn: f64, load: f64, speed: f64) -> bool {
+        let near = |now: f64, then: f64| (now - then).abs() <= FRICTION_CHANGE * then.abs();
+        let passing = TAU / count as f64;
+        self.turn.is_some_and(|then| (turn - then).abs() * FRICTIONS_PER_BALL <= passing)
+            && near(load, self.load)
+            && near(speed, self.speed)
+    }
+}
+
+impl ElementState {
+    /// \[N] sum of the loads on the inner race.
+    pub fn load(&self) -> f64 {
+        self.rested.iter().map(|ball| ball.loads[0]).sum()
+    }
 }
 
 /// A bearing without states in a step.
@@ -140,7 +178,7 @@ impl<'a> ElementStep<'a> {
         Self { joint, start, balls, given, damping, elapsed: h, allowed }
     }
 
-    /// \[N] residual that is small enough.
+    /// \[N] residual of a step that is small enough.
     pub fn tolerance(&self) -> f64 {
         residual_of(self.start.largest)
     }
@@ -208,7 +246,7 @@ impl<'a> ElementStep<'a> {
         let (force, moment) = (halves(0), halves(3));
         let [inner, outer] = [&seen.races.inner.0, &seen.races.outer.0];
         // A cage of given speed hands the moment that it takes to the rings, as their speeds make its own.
-        let friction = self.start.friction * seen.speed / seen.speed.hypot(CREEPS);
+        let friction = self.start.friction.torque * seen.speed / seen.speed.hypot(CREEPS);
         let moment = moment + seen.axis * (self.start.ratio * of.turning - friction);
         let arm = inner.position - outer.position;
         OnRaces {
@@ -256,7 +294,7 @@ impl<'a> ElementStep<'a> {
         by_spin += tangents.by_turn * self.start.ratio;
         let mut by_rate = tangents.by_rate - self.damping.unwrap_or_else(Matrix6::zeros);
         // Of `W/sqrt(W^2 + w^2)`.
-        by_rate[(3, 3)] -= self.start.friction * CREEPS * CREEPS / seen.speed.hypot(CREEPS).powi(3);
+        by_rate[(3, 3)] -= self.start.friction.torque * CREEPS * CREEPS / seen.speed.hypot(CREEPS).powi(3);
         let gains = by_displacement * step.position_gain() + by_rate * step.velocity_gain();
         let ends = PerRace::new(|race| self.relative(race, seen));
         for row in Race::BOTH {

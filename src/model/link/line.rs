@@ -3,11 +3,14 @@
 use std::array::from_fn;
 
 use crate::numerics::elementary::ln;
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::scalar::Scalar;
 
 /// [-] power of the approach of a line contact, and that of its stiffness.
 pub(super) const POWER: f64 = 10.0 / 9.0;
-/// Stations that are taken at a time.
-const LANES: usize = 4;
+
+/// Fours of stations that are summed up together.
+const PART: usize = 4;
 
 /// How the line of a roller falls off towards its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,26 +47,26 @@ impl Profile {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stations {
     /// \[m] places along the roller.
-    place: [f64; LANES],
+    place: Lanes,
     /// [-] shares of the load.
-    share: [f64; LANES],
+    share: Lanes,
     /// \[m] drop of the profile.
-    drop: [f64; LANES],
+    drop: Lanes,
 }
 
 impl Stations {
     /// Place \[m], share and drop \[m] of each.
     pub(super) fn all(stations: &[[f64; 3]]) -> Vec<Self> {
         let of = |four: &[[f64; 3]]| {
-            let number = |k: usize, none: f64| from_fn(|lane| four.get(lane).map_or(none, |of| of[k]));
+            let number = |k: usize, none: f64| Lanes::from_fn(|lane| four.get(lane).map_or(none, |of| of[k]));
             Self { place: number(0, 0.0), share: number(1, 0.0), drop: number(2, f64::INFINITY) }
         };
-        stations.chunks(LANES).map(of).collect()
+        stations.chunks(WIDTH).map(of).collect()
     }
 
     /// \[m] place of each, and drop there.
     pub(super) fn each(all: &[Self]) -> impl Iterator<Item = [f64; 2]> {
-        let each = |of: &Self| from_fn::<_, LANES, _>(|k| [of.place[k], of.drop[k]]);
+        let each = |of: &Self| from_fn::<_, WIDTH, _>(|k| [of.place.0[k], of.drop.0[k]]);
         all.iter().flat_map(each)
     }
 }
@@ -72,41 +75,56 @@ impl Stations {
 /// about the middle, their derivatives by approach and lean (three), energy over 9/19.
 #[cfg_attr(feature = "vectors", multiversion::multiversion(targets("x86_64+avx2")))]
 pub(super) fn sums(stations: &[Stations], way: f64, lean: f64) -> [f64; 6] {
-    let mut sums = [[0.0; LANES]; 6];
-    for of in stations {
-        let approach: [f64; LANES] = from_fn(|k| way + lean * of.place[k] - of.drop[k]);
-        let roots = ninth_roots(approach);
-        for k in 0..LANES {
-            let (root, approach) = (of.share[k] * roots[k], approach[k]);
+    let zero = Lanes::constant(0.0);
+    let mut sums = [zero; 6];
+    // One thing after another for all stations of a part, from and to memory: compilers make vectors of that alone.
+    let (mut approaches, mut roots) = ([zero; PART], [zero; PART]);
+    for part in stations.chunks(PART) {
+        for (of, (approach, root)) in part.iter().zip(approaches.iter_mut().zip(&mut roots)) {
+            *approach = of.place * Lanes::constant(lean) - of.drop + Lanes::constant(way);
+            *root = first_ninth_root(*approach);
+        }
+        for (approach, root) in approaches.iter().zip(&mut roots) {
+            *root = ninth_root(*approach, *root);
+        }
+        for (of, (approach, root)) in part.iter().zip(approaches.iter().zip(&roots)) {
             // What is no number is no contact that is open: it stays in the sums.
-            let (root, approach) = if approach <= 0.0 { (0.0, 0.0) } else { (root, approach) };
-            let (own, slope, place) = (root * approach, POWER * root, of.place[k]);
-            sums[0][k] += own;
-            sums[1][k] += own * place;
-            sums[2][k] += slope;
-            sums[3][k] += slope * place;
-            sums[4][k] += slope * place * place;
-            sums[5][k] += own * approach;
+            let touching = |number: f64, approach: f64| if approach <= 0.0 { 0.0 } else { number };
+            let root = (of.share * *root).zip(*approach, touching);
+            let approach = approach.zip(*approach, touching);
+            let (own, slope) = (root * approach, root * Lanes::constant(POWER));
+            let bend = slope * of.place;
+            let each = [own, own * of.place, slope, bend, bend * of.place, own * approach];
+            sums.iter_mut().zip(each).for_each(|(sum, own)| *sum += own);
         }
     }
-    sums.map(|[a, b, c, d]| (a + b) + (c + d))
+    sums.map(|Lanes([a, b, c, d])| (a + b) + (c + d))
 }
 
-/// Ninth roots of normal numbers above 0: first guesses by their exponents, to 1 %, then three steps of Halley, each of which cubes the error. To the last
-/// bits, in sums, products and quotients alone. Of what is not above 0, anything.
+/// First guess at the ninth root of normal numbers above 0, to 1 %: by their exponents.
 #[inline(always)]
-fn ninth_roots(x: [f64; LANES]) -> [f64; LANES] {
-    const BIAS: u64 = 1023 << 52;
-    let mut roots = x.map(|x| f64::from_bits(x.to_bits() / 9 + BIAS / 9 * 8));
+fn first_ninth_root(x: Lanes) -> Lanes {
+    x.map(|x| {
+        // The upper half of the bits over nine, as a number: no vectors divide integers. Those of 2^52 hold an integer in their lower half.
+        const LARGE: f64 = 4_503_599_627_370_496.0;
+        const BIAS: u64 = (1023 << 52) / 9 * 8;
+        let upper = f64::from_bits(LARGE.to_bits() | (x.to_bits() >> 32)) - LARGE;
+        f64::from_bits(((upper * (1.0 / 9.0) + LARGE).to_bits() << 32).wrapping_add(BIAS))
+    })
+}
+
+/// Ninth roots from first guesses to 1 %: three steps of Halley, each of which cubes the error. To the last bits, in sums, products and quotients alone.
+/// Of what is not above 0, anything.
+#[inline(always)]
+fn ninth_root(x: Lanes, guess: Lanes) -> Lanes {
+    let [four, five] = [4.0, 5.0].map(Lanes::constant);
+    let mut root = guess;
     for _ in 0..3 {
-        roots = from_fn(|k| {
-            let (root, x) = (roots[k], x[k]);
-            let cube = root * root * root;
-            let power = cube * cube * cube;
-            root * ((4.0 * power + 5.0 * x) / (5.0 * power + 4.0 * x))
-        });
+        let cube = root * root * root;
+        let power = cube * cube * cube;
+        root = root * ((power * four + x * five) / (power * five + x * four));
     }
-    roots
+    root
 }
 
 /// Points of Gauss between -1 and 1, with their weights: roots of Legendre's polynomial.

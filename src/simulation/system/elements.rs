@@ -12,7 +12,7 @@ use super::structures::Structures;
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::Joint;
 use crate::dynamics::system::elements::{
-    CREEPS, Damping, ElementJoint, ElementState, ElementStep, OnRaces, Seen, power_of,
+    CREEPS, Damping, ElementJoint, ElementState, ElementStep, KeptFriction, OnRaces, Seen, power_of,
 };
 use crate::dynamics::{Allowed, Boundary};
 use crate::effects::rating::Turning;
@@ -120,7 +120,7 @@ pub fn started_at(
         damping: damping(bearing),
         rested: vec![],
         largest: 0.0,
-        friction: 0.0,
+        friction: KeptFriction::default(),
     };
     let mut step = step(joint, &nothing, bearing, &boundary, 0.0);
     let seen = step.seen_in(carriers, states);
@@ -174,7 +174,8 @@ fn step<'a>(
     let solver = &model.solver;
     let outer = bearing.state.race(Race::Outer).rate.x;
     let unresolved = (solver.unresolved > 0.0).then(|| solver.unresolved_share() * start.largest);
-    let allowed = Allowed { length: solver.tolerance * 2.0 * model.bearing.ball.radius, unresolved };
+    let length = solver.tolerance_without_states() * 2.0 * model.bearing.ball.radius;
+    let allowed = Allowed { length, unresolved };
     // Inertia follows the speeds of the start of the step.
     let mut balls = Balls::new(model, &boundary.conditions, [start.rate, outer]);
     if start.damping.is_some() {
@@ -320,12 +321,18 @@ impl Simulation {
         }
         let Conditions { friction, lubrication, .. } = boundary.conditions;
         let conditions = conditions_with(friction, lubrication, &self.state);
-        let contacts = Contacts::new(&self.model, &self.state, &conditions);
-        self.point = Point::rested(conditions, contacts);
-        if seen.speed.abs() > CREEPS {
+        let (turn, load, speed) = (after.turn, after.load(), seen.speed);
+        let count = after.rested.len();
+        let taken = speed.abs() > CREEPS && !after.friction.serves(count, turn, load, speed);
+        if taken {
+            let contacts = Contacts::new(&self.model, &self.state, &conditions);
+            self.point = Point::rested(conditions, contacts);
             let lost = self.sums().losses;
             // Damping is in the forces.
-            after.friction = (lost.total() - lost.damping) / seen.speed.abs();
+            let torque = (lost.total() - lost.damping) / speed.abs();
+            after.friction = KeptFriction { torque, turn: Some(turn), load, speed };
+        } else {
+            self.point = Point::new(conditions, false);
         }
         after
     }

@@ -95,12 +95,12 @@ impl Structures {
 
     /// What a step may leave of a machine all of whose bearings are links.
     fn may_leave(&self) -> Option<MayLeave> {
-        let Solver { tolerance, unresolved, .. } = self.solver;
         self.scene.bearings.is_empty().then(|| {
             let forces = self.link_states.iter().map(|link| link.force.fixed_rows::<3>(0).norm());
             let largest = forces.fold(0.0, f64::max);
-            let unresolved = (unresolved > 0.0).then(|| self.solver.unresolved_share() * largest);
-            let error = Allowed { length: tolerance * self.scene.smallest_element(), unresolved };
+            let unresolved = (self.solver.unresolved > 0.0).then(|| self.solver.unresolved_share() * largest);
+            let length = self.solver.tolerance_without_states() * self.scene.smallest_element();
+            let error = Allowed { length, unresolved };
             MayLeave { force: residual_of(largest), error }
         })
     }
