@@ -122,7 +122,7 @@ fn ninth_root(x: Lanes, guess: Lanes) -> Lanes {
     for _ in 0..3 {
         let cube = root * root * root;
         let power = cube * cube * cube;
-        root = root * ((power * four + x * five) / (power * five + x * four));
+        root *= (power * four + x * five) / (power * five + x * four);
     }
     root
 }
