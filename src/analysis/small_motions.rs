@@ -203,7 +203,8 @@ impl SmallMotions {
     /// Kinetic energy of the balls, but for that of their spins.
     fn energy_of_balls(&self, unknowns: &DVectorView<'_, Complex<f64>>) -> f64 {
         let square = |k: usize| unknowns.rows(OF_BALL * k + 3, 3).iter().map(Complex::norm_sqr).sum::<f64>();
-        self.balls.iter().enumerate().map(|(k, mass)| mass * square(k)).sum()
+        // None has none, and not -0.
+        self.balls.iter().enumerate().fold(0.0, |sum, (k, mass)| sum + mass * square(k))
     }
 }
 

@@ -53,6 +53,11 @@ impl HhtStep {
         self.gamma * self.h
     }
 
+    /// [s2, s] derivatives of position and velocity by the end acceleration as forces at the end count: by `1 - alpha_f`.
+    pub fn force_gains(&self) -> [f64; 2] {
+        [self.position_gain(), self.velocity_gain()].map(|gain| (1.0 - self.alpha_f) * gain)
+    }
+
     /// Local error of the position: `(beta - alpha_f/2 - 1/6) h^2 (a1 - a0)` (Geradin and Cardona 2001, ch. 11).
     #[inline(always)]
     pub fn local_error(&self, a0: &Vector3<f64>, a1: &Vector3<f64>) -> Vector3<f64> {

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use roulement::interface::variables::MachineVariables;
 use roulement::model::state::Statistics;
 use roulement::scene::system::SystemScene;
+use roulement::simulation::motions::Motion;
 use roulement::simulation::system::System;
 
 use crate::common::{GEARBOX, ROTOR, forces, imbalance, scene, stored, system};
@@ -209,6 +210,30 @@ fn cpu() -> f64 {
     let ticks: f64 =
         rest.split_whitespace().skip(11).take(2).map(|ticks| ticks.parse::<f64>().unwrap()).sum();
     ticks / 100.0
+}
+
+/// Motions of a machine without states are those of its shafts on what bearings give way and damp: none of balls.
+#[test]
+fn independent_motions_without_states_are_those_of_a_shaft_with_them() {
+    let motions = |text: &str| {
+        let motions = system(text).motions().unwrap();
+        assert!(motions.iter().all(|motion| !motion.grows()), "{motions:?}");
+        motions
+    };
+    let (all, own) = (motions(ROTOR), motions(&rotor(&["left", "right"])));
+    assert!(own.iter().all(|motion| motion.balls == 0.0), "{own:?}");
+    // Those of the shaft, but for the ones that are beyond what balls follow at once.
+    let of_shaft = || own.iter().filter(|motion| motion.frequency < 3e3);
+    assert!(of_shaft().count() >= 4, "{own:?}");
+    for motion in of_shaft() {
+        let apart = |other: &Motion| (other.frequency / motion.frequency - 1.0).abs();
+        let nearest = all.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
+        assert!(apart(nearest) < 0.02, "{motion:?} {nearest:?}");
+    }
+    // Beside a bearing with states, too.
+    let mixed = motions(&rotor(&["left"]));
+    let lowest = |of: &[Motion]| of.iter().map(|motion| motion.frequency).fold(f64::INFINITY, f64::min);
+    assert!((lowest(&mixed) / lowest(&own) - 1.0).abs() < 0.05, "{mixed:?}");
 }
 
 /// Default steps of machines without states are those of their shafts: few, and histories within the promise of 2 %.

@@ -31,7 +31,7 @@ const MANY_BALLS: usize = 60;
 const SAME: f64 = 0.05;
 
 /// A machine whose balls go along with rings that move by micrometres, as they do in pockets with play: without ideal cages, which hold them
-/// and damp such motions many times too much (docs/model.md, section 19). None where there is no such cage.
+/// and damp such motions many times too much (docs/model.md, section 19). None where there is no such cage about balls that have states.
 fn in_pockets_with_play(scene: &MachineScene) -> Option<MachineScene> {
     let free = |own: &mut Scene| {
         if own.effects.cage.is_ideal() {
@@ -42,7 +42,13 @@ fn in_pockets_with_play(scene: &MachineScene) -> Option<MachineScene> {
 }
 
 fn has_ideal_cage(scene: &MachineScene) -> bool {
-    scene.bearings().iter().any(|(_, own)| own.effects.cage.is_ideal())
+    match scene {
+        MachineScene::Bearing(own) => own.effects.cage.is_ideal(),
+        MachineScene::Shaft(scene) => {
+            let with_states = scene.bearings.iter().filter(|mounted| mounted.level() != Level::Equilibrium);
+            with_states.into_iter().any(|mounted| mounted.scene.effects.cage.is_ideal())
+        }
+    }
 }
 
 /// A motion, its growth the mean of some moments.

@@ -13,7 +13,6 @@ use crate::model::bodies::{PerRace, Race};
 use crate::model::state::stack;
 use crate::model::structure::{Carrier, StructureState, Turning};
 use crate::model::{Conditions, Model};
-use crate::numerics::hht::HhtStep;
 use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::tilt;
 use crate::quasi_static::bearing::{Balls, Forces, Rested, RingMotion};
@@ -278,12 +277,12 @@ impl<'a> ElementStep<'a> {
         }
     }
 
-    /// Adds the derivative of the structures' residuals by their accelerations to a matrix, whose first rows of each structure are these.
+    /// Adds the derivatives of the structures' residuals by their coordinates and by their rates, times these gains, to a matrix, whose first rows of each
+    /// structure are these.
     pub fn add_tangent(
         &self,
         (seen, on): (&Seen, &OnRaces),
-        trials: &[StructureTrial],
-        step: &HhtStep,
+        [by_coordinates, by_rates]: [f64; 2],
         rows: &[usize],
         matrix: &mut DMatrix<f64>,
     ) {
@@ -295,7 +294,7 @@ impl<'a> ElementStep<'a> {
         let mut by_rate = tangents.by_rate - self.damping.unwrap_or_else(Matrix6::zeros);
         // Of `W/sqrt(W^2 + w^2)`.
         by_rate[(3, 3)] -= self.start.friction.torque * CREEPS * CREEPS / seen.speed.hypot(CREEPS).powi(3);
-        let gains = by_displacement * step.position_gain() + by_rate * step.velocity_gain();
+        let gains = by_displacement * by_coordinates + by_rate * by_rates;
         let ends = PerRace::new(|race| self.relative(race, seen));
         for row in Race::BOTH {
             let (Some((structure, seat)), Some(of_row)) = (&self.joint.seats[row], &ends[row]) else {
@@ -308,7 +307,7 @@ impl<'a> ElementStep<'a> {
                 else {
                     continue;
                 };
-                let block = of_row.tr_mul(&(gains * of_column)) * -(1.0 - step.alpha_f);
+                let block = -of_row.tr_mul(&(gains * of_column));
                 let to = rows[*other];
                 for (i, row) in seat.coordinates().iter().enumerate() {
                     for (k, column) in seat_of_column.coordinates().iter().enumerate() {
@@ -317,7 +316,8 @@ impl<'a> ElementStep<'a> {
                 }
             }
             if let Some(motion) = &seen.seats[row] {
-                let turned = trials[*structure].turned_moments(seat, motion, &on.wrenches[row].moment, step);
+                let moment = &on.wrenches[row].moment;
+                let turned = StructureTrial::turned_moments(seat, motion, moment, by_coordinates);
                 for (i, row) in seat.coordinates().iter().enumerate() {
                     for (k, column) in seat.coordinates().iter().enumerate() {
                         matrix[(at + row, at + column)] += turned[(i, k)];

@@ -73,6 +73,7 @@ impl SystemStep<'_> {
 
     /// Assembles and factorises the border.
     pub(super) fn factorise(&mut self) {
+        let gains = self.step.force_gains();
         let mut matrix = self.border.cleared(self.rows[self.structures.len()]);
         for ((one, trial), at) in self.structures.iter().zip(&self.trials).zip(&self.rows) {
             trial.add_tangent(one.model, &self.step, &mut matrix, *at);
@@ -82,7 +83,7 @@ impl SystemStep<'_> {
                 && let Some(motion) = trial.seat()
             {
                 let moment = &trial.end.bearing_wrench.moment;
-                let turned = self.trials[*structure].turned_moments(seat, motion, moment, &self.step);
+                let turned = StructureTrial::turned_moments(seat, motion, moment, gains[0]);
                 let at = self.rows[*structure];
                 for (i, row) in seat.coordinates().iter().enumerate() {
                     for (k, column) in seat.coordinates().iter().enumerate() {
@@ -94,11 +95,11 @@ impl SystemStep<'_> {
         for (link, LinkForce { by_displacement, by_rate, .. }) in
             self.joined.links.iter().zip(&self.link_forces)
         {
-            let gains = by_displacement * self.step.position_gain() + by_rate * self.step.velocity_gain();
+            let by_acceleration = by_displacement * gains[0] + by_rate * gains[1];
             let ends = || link.ends.iter().enumerate();
             for ((i, row), (k, column)) in ends().flat_map(|row| ends().map(move |column| (row, column))) {
-                let signs = -(1.0 - self.step.alpha_f) * link::sign(i) * link::sign(k);
-                let block = row.map.tr_mul(&(gains * &column.map)) * signs;
+                let signs = -link::sign(i) * link::sign(k);
+                let block = row.map.tr_mul(&(by_acceleration * &column.map)) * signs;
                 for (from, place) in row.coordinates.iter().enumerate() {
                     for (to, other) in column.coordinates.iter().enumerate() {
                         let at = (self.rows[row.structure] + place, self.rows[column.structure] + other);
@@ -108,7 +109,7 @@ impl SystemStep<'_> {
             }
         }
         for (element, (seen, on)) in self.joined.elements.iter().zip(&self.seen) {
-            element.add_tangent((seen, on), &self.trials, &self.step, &self.rows, &mut matrix);
+            element.add_tangent((seen, on), gains, &self.rows, &mut matrix);
         }
         for (step, carried) in self.bearings.iter().zip(&self.carried) {
             for rows in carried {

@@ -335,7 +335,7 @@ impl StructureTrial {
     /// without a frame that turns, as its part is the way that the frame turns by in a step.
     pub fn add_tangent(&self, model: &Structure, step: &HhtStep, matrix: &mut DMatrix<f64>, from: usize) {
         let fraction = 1.0 - step.alpha_f;
-        let (position, velocity) = (fraction * step.position_gain(), fraction * step.velocity_gain());
+        let [position, velocity] = step.force_gains();
         let StructureState { coordinates, rates, accelerations, spin, .. } = &self.end;
         model.mass.add_to(1.0, matrix, from);
         model.stiffness.add_to(position, matrix, from);
@@ -357,18 +357,17 @@ impl StructureTrial {
         }
     }
 
-    /// Derivative of the residual by the accelerations through the direction of a bearing's moments alone; rows and columns are
+    /// Derivative of the residual by the coordinates through the direction of a bearing's moments alone, times a gain; rows and columns are
     /// [`Seat::coordinates`].
     pub fn turned_moments(
-        &self,
         seat: &Seat,
         motion: &SeatMotion,
         moment: &Vector3<f64>,
-        step: &HhtStep,
+        gain: f64,
     ) -> DMatrix<f64> {
         let (_, by_angles) = motion.generalised(moment);
         let angles = seat.map.fixed_rows::<3>(3);
-        angles.tr_mul(&(by_angles * angles)) * (-(1.0 - step.alpha_f) * step.position_gain())
+        angles.tr_mul(&(by_angles * angles)) * -gain
     }
 
     /// Unknowns of a carried race (acceleration, and angular acceleration in world axes times `length` \[m]) by those of

@@ -83,7 +83,7 @@ fn change(rows: &DMatrix<f64>, pivots: &[usize], mass: &DMatrix<f64>) -> Option<
         pivots.iter().zip(follow.iter()).for_each(|(pivot, value)| by[(*pivot, k)] = -value);
     }
     let driven = mass.clone().cholesky()?.solve(&rows.transpose());
-    let moved = driven.clone() * (rows * &driven).try_inverse()?;
+    let moved = driven.clone() * (rows * &driven).lu().try_inverse()?;
     pivots.iter().zip(moved.column_iter()).for_each(|(pivot, column)| by.set_column(*pivot, &column));
     Some(by)
 }

@@ -163,7 +163,8 @@ pub fn steps<'a>(
     elements.iter().zip(states).map(of).collect()
 }
 
-fn step<'a>(
+/// The elements of a bearing in a step of `h` \[s] to a boundary.
+pub fn step<'a>(
     joint: &'a ElementJoint,
     start: &'a ElementState,
     bearing: &Simulation,

@@ -3,7 +3,9 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::System;
+use super::elements;
 use super::statics::of_link;
+use super::structures::Structures;
 use crate::analysis::small_motions::{Mover, Seated, SmallMotion, SmallMotions};
 use crate::dynamics::system::{Joint, StructureTrial};
 use crate::model::bodies::{Body, Race};
@@ -37,11 +39,14 @@ impl System {
             movers.push(own);
         }
         let structures = movers.clone();
-        if !self.structures.links.is_empty() {
-            movers = vec![self.linked(&structures, &first)];
+        if !self.structures.links.is_empty() || !self.structures.elements.is_empty() {
+            let mut whole = self.linked(&structures, &first);
+            self.add_elements(&mut whole, &first);
+            movers = vec![whole];
         }
         let mut parts = vec![];
         let mut running = vec![];
+        let mut across = vec![];
         for (index, (bearing, bodies)) in self.bearings.iter().zip(&own).enumerate() {
             let carried = self.structures.joints.iter().filter(|joint| joint.bearing == index);
             let mut seats: Vec<Seated> = carried.map(|joint| self.seated(joint, size, &first)).collect();
@@ -51,7 +56,15 @@ impl System {
                 parts.push((index, (*body, *moved, *state), next));
                 next += free(moved).len();
             }
-            running.push(bearing.running(seats));
+            // Places of one race against the other, by all coordinates.
+            let map = |race: Race| {
+                let seat = seats.iter().find(|seat| seat.body == race.into());
+                seat.map_or_else(|| Map::zeros(size), |seat| seat.map.clone())
+            };
+            across.push((map(Race::Inner) - map(Race::Outer), bearing));
+            if !bearing.model.without_states {
+                running.push(bearing.running(seats));
+            }
         }
         let motions = SmallMotions::new(&movers, &running).holding(&self.held()).motions(swings)?;
         let structures = structures.iter().zip(&first);
@@ -78,20 +91,12 @@ impl System {
             let mode = self.describe(&Mode { eigenvalue: motion.value, shape }, &[]);
             format!("{}, {}", mode.place, mode.whirl.name())
         };
-        // Places of one race against the other, by all coordinates.
-        let across = running.iter().map(|bearing| {
-            let map =
-                |race: Race| bearing.seats.iter().find(|seat| seat.body == race.into()).map(|seat| &seat.map);
-            let zero = || Map::zeros(size);
-            map(Race::Inner).cloned().unwrap_or_else(zero) - map(Race::Outer).cloned().unwrap_or_else(zero)
-        });
-        let across: Vec<Map> = across.collect();
         let moves_most = |motion: &SmallMotion| {
             let moved = |map: &Map| {
                 let rows = map.fixed_rows::<3>(0).map(Complex::from) * &motion.shape;
                 rows.iter().map(Complex::norm_sqr).sum::<f64>()
             };
-            let most = across.iter().zip(&self.bearings).max_by(|a, b| moved(a.0).total_cmp(&moved(b.0)));
+            let most = across.iter().max_by(|a, b| moved(&a.0).total_cmp(&moved(&b.0)));
             most.and_then(|(_, bearing)| bearing.rolls_over())
         };
         Some(worth_telling(&motions, name, moves_most))
@@ -117,6 +122,20 @@ impl System {
             whole.damping -= map.tr_mul(&(force.by_rate * &map));
         }
         whole
+    }
+
+    /// Adds bearings without states: their balls go along at once.
+    fn add_elements(&self, whole: &mut Mover, first: &[usize]) {
+        let Structures { elements, element_states, carriers, states, .. } = &self.structures;
+        for (joint, state) in elements.iter().zip(element_states) {
+            let bearing = &self.bearings[joint.bearing];
+            let boundary = bearing.boundary(self.time());
+            let step = elements::step(joint, state, bearing, &boundary, 0.0);
+            let seen = step.seen_in(carriers, states);
+            let on = step.forces(&seen);
+            step.add_tangent((&seen, &on), [1.0, 0.0], first, &mut whole.stiffness);
+            step.add_tangent((&seen, &on), [0.0, 1.0], first, &mut whole.damping);
+        }
     }
 
     /// A race on its seat, by `size` coordinates, of which those of each structure begin at `first`.
