@@ -48,7 +48,7 @@ use crate::numerics::lanes::WIDTH;
 use crate::scene::{Groups, Scene, Schedule};
 pub use error::SimulationError;
 use input_paths::InputPaths;
-use inputs::Inputs;
+use inputs::{Inputs, RaceInput};
 use point::Point;
 pub use script::{follows_time, scripted_groups};
 
@@ -273,8 +273,6 @@ impl Simulation {
     pub fn scripted_inputs(&self, time: f64) -> Inputs {
         let mut inputs = self.inputs;
         let scene = &self.scene;
-        inputs.inner.speed = scene.load.inner_speed.at(time);
-        inputs.outer.speed = scene.load.outer_speed.at(time);
         if scene.friction.ball_race.is_scripted() {
             inputs.friction = scene.friction.ball_race.at(time);
         }
@@ -288,11 +286,22 @@ impl Simulation {
             inputs.rises = scene.effects.growth.rises(time);
         }
         for race in Race::BOTH {
-            inputs[race].applied = script::applied(scene, race, time);
-            let now = self.paths.races[race].at(time).0;
-            script::script_motion(scene, race, time, &now, &mut inputs[race]);
+            inputs[race] = self.scripted_race(race, time);
         }
         inputs
+    }
+
+    /// Those of a race: loads, speed and scripted motion.
+    fn scripted_race(&self, race: Race, time: f64) -> RaceInput {
+        let scene = &self.scene;
+        let speed = match race {
+            Race::Inner => &scene.load.inner_speed,
+            Race::Outer => &scene.load.outer_speed,
+        };
+        let applied = script::applied(scene, race, time);
+        let mut input = RaceInput { speed: speed.at(time), applied, ..self.inputs[race] };
+        script::script_motion(scene, race, time, &self.paths.races[race].at(time).0, &mut input);
+        input
     }
 
     /// Does its script come to other values within a span \[s] of time?

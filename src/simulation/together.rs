@@ -73,10 +73,8 @@ impl Together<'_> {
         }
         let bearings = self.bearings.iter_mut().zip(&played.bearings);
         let script = |(bearing, groups): (&mut Simulation, &Groups)| {
-            let mut carried = bearing.carried_races().peekable();
-            if carried.peek().is_some() {
-                let scripted = bearing.scripted_inputs(begin);
-                carried.for_each(|race| bearing.inputs[race] = scripted[race]);
+            for race in bearing.carried_races() {
+                bearing.inputs[race] = bearing.scripted_race(race, begin);
             }
             let script = bearing.begin_script(*groups);
             bearing.paths = bearing.paths.towards(&bearing.inputs, begin, end - begin);

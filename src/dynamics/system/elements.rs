@@ -5,9 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, Dyn, Matrix3, Matrix6, OMatrix, U6, UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::step::StructureStep;
+use super::step::{MayLeave, StructureStep};
 use super::structure::{Seat, StructureTrial};
-use crate::dynamics::Allowed;
 use crate::dynamics::carried::SeatMotion;
 use crate::model::bodies::{PerRace, Race};
 use crate::model::state::stack;
@@ -17,18 +16,20 @@ use crate::numerics::motion::{Pose, Twist, Wrench};
 use crate::numerics::tilt;
 use crate::quasi_static::bearing::{Balls, Forces, Rested, RingMotion};
 use crate::quasi_static::rings::Placed;
+use crate::schema::Solver;
 
-/// [-] share of a load that a residual may leave. It moves rings by as small a share of what contacts give way, where a step may be wrong by a
-/// thousandth of that.
-const SHARE_OF_LOAD: f64 = 1e-7;
+/// [-] share of a load that a residual may leave, over the local error that a step may make, in rolling elements, and at most. Contacts give way by a
+/// thousandth of an element, so that this is a tenth of what the step may be wrong by; and what is left is made good by the next step.
+const SHARE_OF_LOAD: [f64; 2] = [100.0, 1e-5];
 /// [rad/s] speed of the races against each other below which friction goes with it: what sticks is not known at this level.
 pub const CREEPS: f64 = 1e-3;
 /// \[N] residual that is small enough for any bearing.
 const FORCE_TOLERANCE: f64 = 1e-6;
 
-/// \[N] residual that is small enough where the largest load \[N] is this.
-pub fn residual_of(largest: f64) -> f64 {
-    FORCE_TOLERANCE.max(SHARE_OF_LOAD * largest)
+/// \[N] residual that is small enough where the largest load \[N] is this, with settings of the steps.
+pub fn residual_of(largest: f64, solver: &Solver) -> f64 {
+    let [share, most] = SHARE_OF_LOAD;
+    FORCE_TOLERANCE.max((share * solver.tolerance_without_states()).min(most) * largest)
 }
 
 /// A bearing without states, between its seats.
@@ -130,8 +131,8 @@ pub struct ElementStep<'a> {
     pub damping: Option<Matrix6<f64>>,
     /// \[s] time since the start.
     pub elapsed: f64,
-    /// \[m] length of a local error that a step may make, and \[N] change of an inertia force that need not be followed.
-    pub allowed: Allowed,
+    /// What the step may leave.
+    pub may_leave: MayLeave,
 }
 
 /// Both races in a trial.
@@ -171,15 +172,10 @@ impl<'a> ElementStep<'a> {
         balls: Balls,
         given: &'a PerRace<(Pose, Twist)>,
         h: f64,
-        allowed: Allowed,
+        may_leave: MayLeave,
     ) -> Self {
         let damping = start.damping.as_ref().map(|damping| damping.at(start, start.rate));
-        Self { joint, start, balls, given, damping, elapsed: h, allowed }
-    }
-
-    /// \[N] residual of a step that is small enough.
-    pub fn tolerance(&self) -> f64 {
-        residual_of(self.start.largest)
+        Self { joint, start, balls, given, damping, elapsed: h, may_leave }
     }
 
     /// The races where the structures are.

@@ -53,7 +53,7 @@ impl SystemStep<'_> {
             }
         }
         for (element, (seen, on)) in self.joined.elements.iter().zip(&self.seen) {
-            tolerance = tolerance.min(element.tolerance());
+            tolerance = tolerance.min(element.may_leave.force);
             element.add(seen, on, &mut self.trials);
         }
         let mut norm = 0.0;

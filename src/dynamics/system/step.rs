@@ -313,7 +313,7 @@ impl<'a> SystemStep<'a> {
     /// [-] local error over its tolerance: the largest of all bearings and structures, which are in these states before the step of `h` \[s].
     pub fn local_error(&self, before: &[StructureStep<'_>], (h, stages): (f64, Option<&Stages>)) -> f64 {
         let bearings = self.bearings.iter().map(BearingStep::local_error);
-        let of_elements = self.joined.elements.iter().map(|element| element.allowed);
+        let of_elements = self.joined.elements.iter().map(|element| element.may_leave.error);
         let of_links = self.joined.of_links.map(|may_leave| may_leave.error);
         let all = self.bearings.iter().map(BearingStep::allowed).chain(of_elements).chain(of_links);
         let allowed = all.reduce(Allowed::and);

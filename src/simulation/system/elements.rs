@@ -10,10 +10,11 @@ use super::super::together::{Stopped, Together};
 use super::super::{Simulation, SimulationError, conditions_with};
 use super::structures::Structures;
 use crate::analysis::condensed::Condensed;
-use crate::dynamics::system::Joint;
 use crate::dynamics::system::elements::{
     CREEPS, Damping, ElementJoint, ElementState, ElementStep, KeptFriction, OnRaces, Seen, power_of,
+    residual_of,
 };
+use crate::dynamics::system::{Joint, MayLeave};
 use crate::dynamics::{Allowed, Boundary};
 use crate::effects::rating::Turning;
 use crate::equilibrium::MAX_APPROACH;
@@ -176,13 +177,14 @@ pub fn step<'a>(
     let outer = bearing.state.race(Race::Outer).rate.x;
     let unresolved = (solver.unresolved > 0.0).then(|| solver.unresolved_share() * start.largest);
     let length = solver.tolerance_without_states() * 2.0 * model.bearing.ball.radius;
-    let allowed = Allowed { length, unresolved };
+    let error = Allowed { length, unresolved };
+    let may_leave = MayLeave { force: residual_of(start.largest, solver), error };
     // Inertia follows the speeds of the start of the step.
     let mut balls = Balls::new(model, &boundary.conditions, [start.rate, outer]);
     if start.damping.is_some() {
         balls.leave_damping();
     }
-    ElementStep::new(joint, start, balls, &boundary.motion, h, allowed)
+    ElementStep::new(joint, start, balls, &boundary.motion, h, may_leave)
 }
 
 impl Structures {

@@ -101,7 +101,7 @@ impl Structures {
             let unresolved = (self.solver.unresolved > 0.0).then(|| self.solver.unresolved_share() * largest);
             let length = self.solver.tolerance_without_states() * self.scene.smallest_element();
             let error = Allowed { length, unresolved };
-            MayLeave { force: residual_of(largest), error }
+            MayLeave { force: residual_of(largest, &self.solver), error }
         })
     }
 
