@@ -19,16 +19,19 @@ use crate::numerics::kept_lu::KeptLu;
 pub struct Border {
     matrix: DMatrix<f64>,
     lu: KeptLu,
-    /// \[s] step that the factors are of, which serve for others of that size; none where they are those of one step.
-    size: Option<f64>,
+    /// [s2, s] gains of the steps that the factors are of ([`HhtStep::force_gains`]), which serve for others with these; none before the first.
+    gains: Option<[f64; 2]>,
+    /// Rows of bearings with states that they are of.
+    of_bearings: Vec<f64>,
     /// Right-hand side, then solution.
     pub(super) right: DVector<f64>,
 }
 
-/// A matrix of the border that serves for several steps, and the size \[s] of these.
+/// A matrix of the border that serves for several steps, and the gains of these.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptBorder {
-    size: f64,
+    gains: [f64; 2],
+    of_bearings: Vec<f64>,
     /// Column by column.
     matrix: Vec<f64>,
 }
@@ -45,32 +48,60 @@ impl Border {
         matrix
     }
 
-    /// Factorises the matrix that was assembled, and keeps it: for steps of a size \[s], if one is given.
-    pub(super) fn factorise(&mut self, matrix: DMatrix<f64>, size: Option<f64>) {
+    /// Factorises the matrix that was assembled, with these rows of bearings, and keeps it for steps with these gains.
+    pub(super) fn factorise<'a>(
+        &mut self,
+        matrix: DMatrix<f64>,
+        of_bearings: impl Iterator<Item = &'a [f64]>,
+        gains: [f64; 2],
+    ) {
         self.lu.factorise(&matrix);
         self.matrix = matrix;
-        self.size = size;
+        self.gains = Some(gains);
+        self.of_bearings.clear();
+        of_bearings.for_each(|rows| self.of_bearings.extend_from_slice(rows));
     }
 
-    /// Does the matrix serve for steps of a size \[s]? Sizes of steps that share an interval differ by the rounding of times.
-    pub(super) fn serves(&self, size: f64) -> bool {
+    /// Does the matrix serve for steps with these gains, of bearings with these rows? Sizes of steps that share an interval differ by the rounding of
+    /// times.
+    pub(super) fn serves<'a>(
+        &self,
+        gains: [f64; 2],
+        mut of_bearings: impl Iterator<Item = &'a [f64]>,
+    ) -> bool {
         const ROUNDING: f64 = 1e-9;
-        self.size.is_some_and(|own| (own - size).abs() <= ROUNDING * size)
+        let near = |(own, gain): (f64, f64)| (own - gain).abs() <= ROUNDING * gain;
+        let Some(own) = self.gains else { return false };
+        let mut rest = &self.of_bearings[..];
+        let mut same = |rows: &[f64]| match rest.split_at_checked(rows.len()) {
+            Some((own, others)) => {
+                rest = others;
+                own == rows
+            }
+            None => false,
+        };
+        own.into_iter().zip(gains).all(near) && of_bearings.all(&mut same) && rest.is_empty()
     }
 
-    /// The matrix that serves for several steps, if one does.
+    /// The matrix that serves for several steps, if there is one.
     pub fn kept(&self) -> Option<KeptBorder> {
-        self.size.map(|size| KeptBorder { size, matrix: self.matrix.as_slice().to_vec() })
+        let kept = |gains| KeptBorder {
+            gains,
+            of_bearings: self.of_bearings.clone(),
+            matrix: self.matrix.as_slice().to_vec(),
+        };
+        self.gains.map(kept)
     }
 
     /// Goes on with a matrix that was kept, or with none; false, with nothing changed, if it is none of so many rows.
     pub fn restore(&mut self, kept: Option<&KeptBorder>, rows: usize) -> bool {
         let fits = kept.is_none_or(|kept| kept.matrix.len() == rows * rows);
         match kept {
-            Some(kept) if fits => {
-                self.factorise(DMatrix::from_column_slice(rows, rows, &kept.matrix), Some(kept.size));
+            Some(KeptBorder { gains, of_bearings, matrix }) if fits => {
+                let matrix = DMatrix::from_column_slice(rows, rows, matrix);
+                self.factorise(matrix, std::iter::once(&of_bearings[..]), *gains);
             }
-            None => self.size = None,
+            None => self.gains = None,
             Some(_) => {}
         }
         fits

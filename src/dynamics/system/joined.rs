@@ -119,8 +119,7 @@ impl SystemStep<'_> {
             }
         }
         take_out(&mut matrix, self.held.iter().copied(), 1.0);
-        // Bearings with states renew theirs step by step.
-        let size = self.bearings.is_empty().then_some(self.step.h);
-        self.border.factorise(matrix, size);
+        let rows = self.bearings.iter().map(|step| step.workspace.reduced.as_slice());
+        self.border.factorise(matrix, rows, gains);
     }
 }

@@ -56,8 +56,7 @@ pub fn advance_perturbed<'a>(
     let steps: Vec<_> = steps
         .map(|(of, workspace)| BearingStep::new(of.model, of.start, of.boundary, step, workspace))
         .collect();
-    let mut border = Border::default();
-    SystemStep::new(steps, structures, joined, step, &mut border).residual(solution, true);
+    SystemStep::new(steps, structures, joined, step, &mut Border::default()).residual(solution, true);
     let mut unknowns = vec![0.0; solution.len()];
     let mut ends = vec![];
     for Perturbed { mut states, boundaries, structures } in perturbed {
@@ -72,6 +71,8 @@ pub fn advance_perturbed<'a>(
             own.force_tolerance = 0.0;
             own
         });
+        // Its tangent is its own.
+        let mut border = Border::default();
         let mut equations = SystemStep::new(steps.collect(), &structures, joined, step, &mut border);
         equations.residual(solution, false);
         if !equations.correction(&mut unknowns) {

@@ -31,6 +31,9 @@ use crate::schema::Solver;
 /// place of one in 70.
 const RENEWED_EARLY: f64 = 0.03;
 
+/// [-] share of a residual that a correction leaves at most with a border that serves for several steps.
+const BORDER_LEAVES: f64 = 0.1;
+
 /// The scheme of a step of `h` \[s] of bearings in these states: that of their scenes, with more damping where all of them stand. Where none has states
 /// it is that of the machine.
 pub(super) fn scheme<'a>(
@@ -119,10 +122,10 @@ pub struct SystemStep<'a> {
     /// Rows of it of coordinates whose motion is given.
     pub(super) held: Vec<usize>,
     pub(super) border: &'a mut Border,
-    /// How often the matrices of the bearings whose rows the border has were assembled; none before it has some.
-    assembled: Option<u64>,
-    /// How often a new tangent was asked for, which bearings without states do not count.
-    asked: u64,
+    /// Is a new tangent asked for?
+    asked: bool,
+    /// [-] residual over its tolerance now, and where the last correction was found.
+    norm: [f64; 2],
     /// [-] residual of each bearing over its tolerance.
     norms: Vec<f64>,
     /// Forces of links where the structures are.
@@ -183,8 +186,8 @@ impl<'a> SystemStep<'a> {
             rows: vec![],
             held: vec![],
             border,
-            assembled: None,
-            asked: 0,
+            asked: false,
+            norm: [0.0, f64::INFINITY],
             norms: vec![],
             link_forces: vec![],
             seen: vec![],
@@ -269,6 +272,17 @@ impl<'a> SystemStep<'a> {
         // All of them look.
         let touching = self.bearings.iter_mut().filter_map(|step| step.list_touching().then_some(()));
         touching.count() > 0
+    }
+
+    /// Factorises the border where that which is there does not serve: it is of other steps or rows of bearings, a new tangent was asked for, or the last
+    /// correction left too much.
+    fn renew_border(&mut self) {
+        let rows = self.bearings.iter().map(|step| step.workspace.reduced.as_slice());
+        let left = self.norm[0] / self.norm[1];
+        if self.asked || left > BORDER_LEAVES || !self.border.serves(self.step.force_gains(), rows) {
+            self.factorise();
+        }
+        (self.asked, self.norm[1]) = (false, self.norm[0]);
     }
 
     /// Goes on without the matrices of earlier steps.
@@ -358,19 +372,20 @@ impl Equations for SystemStep<'_> {
             trial.move_to(one.model, own, one.start, &self.step, one.load);
         }
         self.see_structures();
-        self.asked += u64::from(with_tangent);
+        self.asked |= with_tangent;
         self.norms.clear();
         for (index, step) in self.bearings.iter_mut().enumerate() {
             let own = &unknowns[self.first[index]..self.first[index + 1]];
             self.norms.push(step.residual(own, with_tangent));
         }
         let structures = self.assemble_structures();
-        self.norms.iter().fold(structures, |norm, own| larger(norm, *own))
+        self.norm[0] = self.norms.iter().fold(structures, |norm, own| larger(norm, *own));
+        self.norm[0]
     }
 
     fn has_tangent(&self) -> bool {
         match self.bearings.is_empty() {
-            true => self.border.serves(self.step.h),
+            true => self.border.serves(self.step.force_gains(), std::iter::empty()),
             false => self.bearings.iter().all(Equations::has_tangent),
         }
     }
@@ -384,15 +399,7 @@ impl Equations for SystemStep<'_> {
         if !self.bearings.is_empty() {
             self.assemble_structures();
         }
-        let assembled = match self.bearings.is_empty() {
-            true => Some(self.asked),
-            false => Some(self.bearings.iter().map(|step| step.assembled).sum()),
-        };
-        let served = self.asked == 0 && self.bearings.is_empty() && self.border.serves(self.step.h);
-        if self.assembled != assembled && !served {
-            self.factorise();
-            self.assembled = assembled;
-        }
+        self.renew_border();
         let border = &mut *self.border;
         border.right.resize_vertically_mut(self.rows[self.structures.len()], 0.0);
         for (trial, at) in self.trials.iter().zip(&self.rows) {
