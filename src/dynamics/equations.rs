@@ -39,8 +39,6 @@ pub struct BearingStep<'a> {
     pub boundary: &'a Boundary,
     pub force_tolerance: f64,
     pub workspace: &'a mut Workspace,
-    /// How often the border was assembled.
-    pub(super) assembled: u64,
     /// Corrections so far.
     pub(super) corrections: u32,
     /// [-] largest residual of the bodies over its tolerance: now, and before the last correction.
@@ -91,7 +89,6 @@ impl<'a> BearingStep<'a> {
             boundary,
             force_tolerance: start.force_tolerance,
             workspace,
-            assembled: 0,
             corrections: 0,
             of_bodies: [0.0; 2],
             renewed_rows: false,

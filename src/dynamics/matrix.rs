@@ -63,7 +63,6 @@ impl BearingStep<'_> {
     /// Factorises the rows of the bodies, with what the balls leave in them; the bodies have derivatives. Rows of races that are carried
     /// are left to what carries them, without the others.
     pub(super) fn factorise(&mut self) {
-        self.assembled += 1;
         self.assemble_blocks();
         self.workspace.list_members(self.model.border_offsets());
         let origin = self.races_origin();

@@ -14,6 +14,7 @@ pub mod state;
 pub mod structure;
 
 use nalgebra::{UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::contact::ball_ball::BallBallModel;
 use crate::contact::ball_spall::Damage;
@@ -45,7 +46,7 @@ use raceways::RacewayContacts;
 use spacing::Spacing;
 
 /// Conditions that may change from step to step and are the same in every contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// [-] friction coefficient of the ball-race contacts.
     pub friction: f64,

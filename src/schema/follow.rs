@@ -18,7 +18,7 @@ const USUAL_UNRESOLVED: f64 = 5e-3;
 /// where the others carry little, too.
 const APPROACH_OF_LOADED: f64 = 1e-3;
 /// [-] tolerance of bearings without states over the usual one: no balls swing that would ask for less, but shafts swing that nothing damps. With it the
-/// swing of a shaft on springs is right to 1.3 % after 3.6 periods (`tests/shaft/rollers_alone.rs`; with ten times as much it is not to 5 %), and
+/// swing of a shaft on springs is right to 2 % over 3.6 periods (`tests/shaft/rollers_alone.rs`; with ten times as much it is not to 5 %), and
 /// means and histories of a rotor and of the machines of scenes and examples are those of fine steps to 0.5 %.
 const WITHOUT_STATES: f64 = 20.0;
 /// [-] largest and first step where nothing is said, in periods of a ball between its races. The tolerance holds steps down where

@@ -1,5 +1,7 @@
 //! Friction of bearings without states: it brakes their shafts by the power that their contacts lose.
 
+use roulement::model::bodies::Race;
+use roulement::simulation::Simulation;
 use roulement::simulation::system::System;
 
 use crate::common::{GEARBOX, imbalance, stored, system, train};
@@ -103,13 +105,35 @@ fn invariant_friction_turns_round_with_the_speed() {
         system.advance(time).unwrap();
         system
             .bearings()
-            .map(|(_, b)| b.state().race(roulement::model::bodies::Race::Inner).bearing_wrench.moment.x)
+            .map(|(_, b)| b.state().race(Race::Inner).bearing_wrench.moment.x)
             .collect::<Vec<_>>()
     };
     let before = on_the_ring(2e-3);
     let after = on_the_ring(10e-3);
     for (before, after) in before.iter().zip(&after) {
         assert!(*before != 0.0 && (after / before + 1.0).abs() < 0.02, "{before} {after}");
+    }
+}
+
+/// Slowly turning, where no ball passes and neither load nor speed change.
+#[test]
+fn invariant_friction_follows_its_coefficient_at_once() {
+    let slow = ("speed = \"6000 rpm\"", "speed = \"30 rpm\"");
+    let friction = "level = \"equilibrium\"\nset = { friction = { ball_race = [[0, 0.1], [\"1 ms\", 0.1], [\"1.2 ms\", 0.02]] } }";
+    let mut system = system(&pinion("equilibrium", &[slow, ("level = \"equilibrium\"", friction)]));
+    let mut on_the_rings = |time: f64| {
+        system.advance(time).unwrap();
+        let of = |bearing: &Simulation| {
+            let braked = bearing.state().race(Race::Inner).bearing_wrench.moment.x;
+            let lost = bearing.outputs().friction_torque;
+            assert!((braked.abs() / lost - 1.0).abs() < 0.02, "{time}: {braked} {lost}");
+            lost
+        };
+        system.bearings().map(|(_, bearing)| of(bearing)).collect::<Vec<_>>()
+    };
+    let (before, after) = (on_the_rings(0.9e-3), on_the_rings(1.5e-3));
+    for (before, after) in before.iter().zip(&after) {
+        assert!(*after < 0.5 * before, "{before} {after}");
     }
 }
 

@@ -6,6 +6,7 @@ mod table;
 
 use roulement::effects::cage::CageKind;
 use roulement::scene::machine::MachineScene;
+use roulement::scene::system::MountedScene;
 use roulement::scene::{Level, Scene, Schedule};
 use roulement::simulation::machine::{Machine, MachineError};
 use roulement::simulation::motions::Motion;
@@ -45,8 +46,10 @@ fn has_ideal_cage(scene: &MachineScene) -> bool {
     match scene {
         MachineScene::Bearing(own) => own.effects.cage.is_ideal(),
         MachineScene::Shaft(scene) => {
-            let with_states = scene.bearings.iter().filter(|mounted| mounted.level() != Level::Equilibrium);
-            with_states.into_iter().any(|mounted| mounted.scene.effects.cage.is_ideal())
+            let matters = |mounted: &MountedScene| {
+                mounted.level() != Level::Equilibrium && mounted.scene.effects.cage.is_ideal()
+            };
+            scene.bearings.iter().any(matters)
         }
     }
 }

@@ -64,23 +64,11 @@ impl Border {
 
     /// Does the matrix serve for steps with these gains, of bearings with these rows? Sizes of steps that share an interval differ by the rounding of
     /// times.
-    pub(super) fn serves<'a>(
-        &self,
-        gains: [f64; 2],
-        mut of_bearings: impl Iterator<Item = &'a [f64]>,
-    ) -> bool {
+    pub(super) fn serves<'a>(&self, gains: [f64; 2], of_bearings: impl Iterator<Item = &'a [f64]>) -> bool {
         const ROUNDING: f64 = 1e-9;
         let near = |(own, gain): (f64, f64)| (own - gain).abs() <= ROUNDING * gain;
-        let Some(own) = self.gains else { return false };
-        let mut rest = &self.of_bearings[..];
-        let mut same = |rows: &[f64]| match rest.split_at_checked(rows.len()) {
-            Some((own, others)) => {
-                rest = others;
-                own == rows
-            }
-            None => false,
-        };
-        own.into_iter().zip(gains).all(near) && of_bearings.all(&mut same) && rest.is_empty()
+        self.gains.is_some_and(|own| own.into_iter().zip(gains).all(near))
+            && self.of_bearings.iter().eq(of_bearings.flatten())
     }
 
     /// The matrix that serves for several steps, if there is one.

@@ -80,32 +80,45 @@ pub struct ElementState {
     pub friction: KeptFriction,
 }
 
-/// Friction of the contacts of a bearing without states, and where it was found: it changes slowly, and serves as long as the bearing is near there.
+/// Friction of the contacts of a bearing without states: it changes slowly, and serves as long as the bearing is near where it was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KeptFriction {
     /// [N m] torque that brings the losses of the contacts.
     pub torque: f64,
-    /// \[rad] turn of the elements there; none is known before the first.
-    pub turn: Option<f64>,
+    /// Where it was found; nowhere before the first.
+    pub found: Option<FrictionPlace>,
+}
+
+/// What the friction of a bearing without states depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrictionPlace {
+    /// \[rad] turn of the elements.
+    pub turn: f64,
     /// \[N] sum of the loads on the inner race.
     pub load: f64,
     /// [rad/s] speed of the inner race against the outer one.
     pub speed: f64,
+    /// Conditions of the contacts.
+    pub conditions: Conditions,
 }
 
-/// [-] change of load or speed with which friction is taken anew. What is lost follows neither more steeply than with its power 1.5.
+/// [-] change of load or speed with which friction is taken anew. Torques follow the load with its power 4/3 and the speed with its square, in drag, at
+/// most: they are wrong by 2 %.
 const FRICTION_CHANGE: f64 = 0.01;
-/// Times that friction is taken to the passing of a ball, at least.
+/// Times that friction is taken to the passing of a ball, at least: what changes with it, changes once in it.
 const FRICTIONS_PER_BALL: f64 = 4.0;
 
 impl KeptFriction {
-    /// Does it serve where so many elements have turned so far \[rad], under a sum of loads \[N] and at a speed [rad/s]?
-    pub fn serves(&self, count: usize, turn: f64, load: f64, speed: f64) -> bool {
+    /// Does it serve at a place of so many elements?
+    pub fn serves(&self, count: usize, at: &FrictionPlace) -> bool {
         let near = |now: f64, then: f64| (now - then).abs() <= FRICTION_CHANGE * then.abs();
         let passing = TAU / count as f64;
-        self.turn.is_some_and(|then| (turn - then).abs() * FRICTIONS_PER_BALL <= passing)
-            && near(load, self.load)
-            && near(speed, self.speed)
+        self.found.is_some_and(|then| {
+            (at.turn - then.turn).abs() * FRICTIONS_PER_BALL <= passing
+                && near(at.load, then.load)
+                && near(at.speed, then.speed)
+                && at.conditions == then.conditions
+        })
     }
 }
 

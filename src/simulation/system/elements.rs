@@ -11,8 +11,8 @@ use super::super::{Simulation, SimulationError, conditions_with};
 use super::structures::Structures;
 use crate::analysis::condensed::Condensed;
 use crate::dynamics::system::elements::{
-    CREEPS, Damping, ElementJoint, ElementState, ElementStep, KeptFriction, OnRaces, Seen, power_of,
-    residual_of,
+    CREEPS, Damping, ElementJoint, ElementState, ElementStep, FrictionPlace, KeptFriction, OnRaces, Seen,
+    power_of, residual_of,
 };
 use crate::dynamics::system::{Joint, MayLeave};
 use crate::dynamics::{Allowed, Boundary};
@@ -324,16 +324,14 @@ impl Simulation {
         }
         let Conditions { friction, lubrication, .. } = boundary.conditions;
         let conditions = conditions_with(friction, lubrication, &self.state);
-        let (turn, load, speed) = (after.turn, after.load(), seen.speed);
-        let count = after.rested.len();
-        let taken = speed.abs() > CREEPS && !after.friction.serves(count, turn, load, speed);
-        if taken {
+        let at = FrictionPlace { turn: after.turn, load: after.load(), speed: seen.speed, conditions };
+        if at.speed.abs() > CREEPS && !after.friction.serves(after.rested.len(), &at) {
             let contacts = Contacts::new(&self.model, &self.state, &conditions);
             self.point = Point::rested(conditions, contacts);
             let lost = self.sums().losses;
             // Damping is in the forces.
-            let torque = (lost.total() - lost.damping) / speed.abs();
-            after.friction = KeptFriction { torque, turn: Some(turn), load, speed };
+            let torque = (lost.total() - lost.damping) / at.speed.abs();
+            after.friction = KeptFriction { torque, found: Some(at) };
         } else {
             self.point = Point::new(conditions, false);
         }
